@@ -1,4 +1,4 @@
-"""The beams' own differential equations, integrated to round-off: exact answers in the theory of bending alone."""
+"""Exact answers of bending theory: the beams' differential equations, integrated to round-off."""
 
 from elastica_reference.march import answer
 from elastica_reference.settings import Settings

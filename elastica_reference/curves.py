@@ -5,9 +5,9 @@ symbol   meaning
 =======  ==========================================================================
 s        arc length from the beam's start, in units of length
 θ, κ     tangent angle; curvature dθ/ds; κ', κ'' its derivatives
-u        variable of a graph y = f(u) or x = f(u), f its value; σ = ±1, the way it runs
+u        variable of a graph y = f(u) or x = f(u), f its value; σ = ±1, its direction
 v        √(1 + f'²) = ds/|du|
-R, φ     radius of an arc and the angle at which it begins
+R, φ     radius of an arc and its initial angle
 =======  ==========================================================================
 
 A graph's κ = ±σ f''/v³ and dκ/ds = ±(f'''/v³ − 3 f' f''²/v⁵)/v, with + for y = f(x); its arc length is integrated by
@@ -29,13 +29,13 @@ from elastica_reference.spline import Interpolated
 
 _PANELS, _NODES = 64, 16
 _INVERSIONS = 8
-_KEPT = 512  # sets of arc lengths: the same places are asked for the angle, κ and its slopes, iteration after iteration
+_KEPT = 512  # remembered sets of arc lengths: iterations evaluate angle, κ and derivatives at the same places
 
 
 class NeutralLine(Protocol):
-    """A line by arc length; every function takes arc lengths (n,) and hands out (n,), ``place`` (2, n).
+    """A line by arc length; functions map arc lengths (n,) to values (n,), and ``place`` to (2, n).
 
-    ``kinks`` are arc lengths strictly inside at which its curvature has a kink.
+    ``kinks`` are inner arc lengths with a kink of the curvature.
     """
 
     @property
@@ -64,7 +64,7 @@ def neutral_line(curve: Curve, unit: float) -> NeutralLine:
 
 @dataclass(frozen=True)
 class Straight:
-    """From ``start`` (2,) to ``end`` (2,)."""
+    """A straight line from ``start`` (2,) to ``end`` (2,)."""
 
     start: Array
     end: Array
@@ -72,7 +72,7 @@ class Straight:
 
     @cached_property
     def length(self) -> float:
-        """Its length."""
+        """Length of the line."""
         return float(np.hypot(*(self.end - self.start)))
 
     def angle(self, s: Array) -> Array:
@@ -92,13 +92,16 @@ class Straight:
         return np.zeros(np.shape(s))
 
     def place(self, s: Array) -> Array:
-        """The points."""
+        """Points (2, n)."""
         return self.start[:, None] + np.multiply.outer((self.end - self.start) / self.length, s)
 
 
 @dataclass(frozen=True)
 class Circular:
-    """About ``center`` (2,) with ``radius`` R from the angle ``begin`` φ over ``sweep``, positive counter-clockwise."""
+    """An arc about ``center`` (2,) with ``radius`` R from the angle ``begin`` φ over ``sweep``.
+
+    The sweep is positive counter-clockwise.
+    """
 
     center: Array
     radius: float
@@ -138,13 +141,13 @@ class Circular:
         return np.zeros(np.shape(s))
 
     def place(self, s: Array) -> Array:
-        """The points."""
+        """Points (2, n)."""
         at = self.begin + math.copysign(1.0, self.sweep) * np.asarray(s) / self.radius
         return self.center[:, None] + self.radius * np.stack([np.cos(at), np.sin(at)])
 
 
 class Graph:
-    """A polynomial's graph."""
+    """Graph of a polynomial."""
 
     kinks = ()
 
@@ -160,11 +163,11 @@ class Graph:
         x, w = np.polynomial.legendre.leggauss(_NODES)
         self._x, self._w = 0.5 * (x + 1.0), 0.5 * w
         self._sums = np.concatenate(([0.0], np.cumsum(self._arc(self._ends[:-1], self._ends[1:]))))
-        self._found = lru_cache(maxsize=_KEPT)(self._sought)
+        self._remembered_variable = lru_cache(maxsize=_KEPT)(self._computed_variable)
 
     @property
     def length(self) -> float:
-        """Its arc length."""
+        """Arc length of the graph."""
         return float(self._sums[-1])
 
     def _speed(self, u: Array) -> Array:
@@ -176,11 +179,11 @@ class Graph:
 
     def _variable(self, s: Array) -> Array:
         s = np.asarray(s, dtype=float)
-        return self._found(s.tobytes(), s.shape)
+        return self._remembered_variable(s.tobytes(), s.shape)
 
-    def _sought(self, places: bytes, shape: tuple[int, ...]) -> Array:
+    def _computed_variable(self, places: bytes, shape: tuple[int, ...]) -> Array:
         s = np.frombuffer(places).reshape(shape)
-        # beyond the ends, where Newton's method may look for a place, the graph goes on
+        # the graph continues beyond its ends, for iterates of Newton's method
         panel = np.clip(np.searchsorted(self._sums, s, side="right") - 1, 0, _PANELS - 1)
         begin, rest = self._ends[panel], s - self._sums[panel]
         u = begin + self._sense * rest / self._speed(begin)
@@ -190,9 +193,9 @@ class Graph:
             u = u + self._sense * step
             if np.max(np.abs(step), initial=0.0) < 1e-15 * self.length:
                 break
-        found = np.asarray(u)
-        found.setflags(write=False)
-        return found
+        variables = np.asarray(u)
+        variables.setflags(write=False)
+        return variables
 
     def angle(self, s: Array) -> Array:
         """θ."""
@@ -223,6 +226,6 @@ class Graph:
         return np.asarray(second if self._along_x else -second)
 
     def place(self, s: Array) -> Array:
-        """The points."""
+        """Points (2, n)."""
         u = self._variable(s)
         return np.stack([u, self._f(u)]) if self._along_x else np.stack([self._f(u), u])

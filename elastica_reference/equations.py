@@ -1,19 +1,19 @@
-"""The equations of a mechanism of elasticas: pieces joined at bodies, knots and contacts.
+"""Equations of a mechanism of elasticas: pieces joined at bodies, knots and contacts.
 
 ==========  ================================================================================================
 symbol      meaning
 ==========  ================================================================================================
 z           unknowns, see :mod:`elastica_reference.layout`
-λ           value of the load or drive that is stepped
+λ           value of the stepped load or drive
 ==========  ================================================================================================
 
 Source: S. S. Antman, Nonlinear Problems of Elasticity, chapter 4 (balance laws of planar rods), without stretch and
-shear.  At a knot everything is continuous, but the force where one acts; contacts are
-:mod:`elastica_reference.touching` and :mod:`elastica_reference.wrapping`; the forces and
-moments on every body that moves vanish together.
+shear. At a knot all quantities are continuous except for the internal force under a point force. Contacts are in
+:mod:`elastica_reference.touching` and :mod:`elastica_reference.wrapping`. The forces and moments on every moving body
+are in equilibrium.
 
-Derivatives are taken by the complex step, all columns at once: unknowns have the shape (n, K), with one real part
-in all columns.  A piece's end follows from its start by its own exact derivatives.
+Derivatives use the complex step, for all columns at once: unknowns have the shape (n, K), with equal real parts in
+all columns. The end state of a piece follows from the start state by exact derivatives of the piece.
 """
 
 from collections.abc import Callable, Mapping
@@ -25,13 +25,13 @@ import numpy as np
 from cprbm_scene import CircleContact
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, SlidingBody
-from elastica_reference.evaluation import Columns, Evaluation, Held, Part
+from elastica_reference.evaluation import Columns, EndAction, Evaluation, Part
 from elastica_reference.layout import Layout, layout
 from elastica_reference.model import Model, Strip
 from elastica_reference.spectral import piece, rule
 from elastica_reference.structure import Structure
 from elastica_reference.touching import touch_points
-from elastica_reference.wrapping import lie_between, lie_from_clamp
+from elastica_reference.wrapping import wrap_between, wrap_from_clamp
 
 Guess = Callable[[str, Array], Array]
 """θ (n,) of a beam at arc lengths (n,)."""
@@ -39,13 +39,13 @@ Guess = Callable[[str, Array], Array]
 
 @dataclass(frozen=True)
 class Equations:
-    """The equations of a structure under given loads.
+    """Equations of a structure under given loads.
 
     Attributes:
         model: the mechanism.
-        structure: which contacts are closed.
-        stepped: the load or drive whose value is λ.
-        others: values of the others, without dimension.
+        structure: the closed contacts.
+        stepped: name of the load or drive with the value λ.
+        others: dimensionless values of the other loads and drives.
         nodes: Gauss points of a piece.
     """
 
@@ -57,11 +57,11 @@ class Equations:
 
     @cached_property
     def layout(self) -> Layout:
-        """Where the unknowns stand."""
+        """Positions of the unknowns in z."""
         return layout(self.model, self.structure)
 
     def __call__(self, z: Columns, lam: Columns, guess: Guess) -> Evaluation:
-        """Everything at z (n, K) and λ (K,), with pieces solved from the tangent angles of a ``guess``.
+        """All quantities at z (n, K) and λ (K,), with pieces solved from the tangent angles ``guess``.
 
         Raises:
             UnsolvableError: a piece cannot be integrated.
@@ -95,7 +95,7 @@ class Equations:
                 along = self._along(name)
                 out.placements[name] = np.outer([along[0], along[1], 0.0], z[bodies[name]][0])
             elif self.model.moving.get(name) == 2:
-                # how far the pin is in its slot, and how the body turns about it
+                # position of the pin in its slot, and rotation of the body about the pin
                 along, (far, phi), pin = self._along(name), z[bodies[name]], self._pin(name)
                 out.placements[name] = np.stack([0.0 * phi, 0.0 * phi, phi])
                 u, v = np.outer(along, far) + (pin - self.model.reference(name))[:, None] - out.turned(name, pin)
@@ -108,12 +108,12 @@ class Equations:
                 out.centres[name] = out.moved(contact.body, np.array(contact.center) / self.model.unit_length)
 
     def _along(self, body: str) -> Array:
-        """The direction (2,) of a slide; of no meaning for others."""
+        """Unit direction (2,) of a slide; zero for other bodies."""
         record = self.model.scene.bodies[body]
         return unit(record.along) if isinstance(record, SlidingBody) else np.zeros(2)
 
     def _pin(self, body: str) -> Array:
-        """The point (2,) that stays in the slot, at rest; of no meaning for others."""
+        """Reference position (2,) of the point in the slot; zero for other bodies."""
         record = self.model.scene.bodies[body]
         if not isinstance(record, SlidingBody) or record.pin is None:
             return np.zeros(2)
@@ -141,11 +141,11 @@ class Equations:
                 out.rows.append(out.placements[drive.body][2] - value)
 
     def _value(self, name: str, lam: Columns) -> Columns:
-        """Of a load or drive (K,)."""
+        """Value (K,) of a load or drive."""
         return lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
 
     def _forces_on_beams(self, lam: Columns) -> tuple[dict[tuple[str, float], Columns], dict[tuple[str, str], Columns]]:
-        """Forces (2, K) by beam and knot, and by beam and end."""
+        """Point forces (2, K) by beam and knot, and by beam and end."""
         inside: dict[tuple[str, float], Columns] = {}
         at_ends: dict[tuple[str, str], Columns] = {}
         for name, load in self.model.scene.loads.items():
@@ -171,7 +171,7 @@ class Equations:
         lam: Columns,
         forces: Mapping[tuple[str, float], Columns],
     ) -> None:
-        """A beam's pieces, with the rows at its ends and knots and along circles."""
+        """Pieces of a beam, with the rows at its ends and knots and along circles."""
         name, order = strip.name, self.structure.order[strip.name]
         wraps = {wrap.contact: wrap for wrap in self.structure.wraps(name)}
         begins, stops = self._borders(strip, z)
@@ -187,12 +187,12 @@ class Equations:
         for item in order:
             wrap = wraps.get(item) if isinstance(item, str) else None
             if wrap is not None and wrap.held:
-                lie_from_clamp(out, self.layout, wrap, z)
+                wrap_from_clamp(out, self.layout, wrap, z)
                 continue
             before, after = parts[k], parts[k + 1]
             k += 1
             if wrap is not None:
-                lie_between(out, self.layout, wrap, before, after, z)
+                wrap_between(out, self.layout, wrap, before, after, z)
                 continue
             if not isinstance(item, str):
                 out.turnings[name, item] = (self.layout.pieces[name][k].start + 2, len(out.rows) + 3)
@@ -202,7 +202,7 @@ class Equations:
                 out.rows += list(jump + forces[name, item] if (name, item) in forces else jump)
 
     def _borders(self, strip: Strip, z: Columns) -> tuple[list[Columns], list[Columns]]:
-        """Where a beam's pieces begin and where they stop."""
+        """Arc lengths (K,) of the starts and of the ends of a beam's pieces."""
         where, touches = self.layout.places, self.structure.wraps(strip.name)
         wraps = {wrap.contact: wrap for wrap in touches}
         begins, stops = [np.zeros_like(z[0])], [np.full_like(z[0], strip.length)]
@@ -222,7 +222,7 @@ class Equations:
         return begins, stops
 
     def places_of(self, beam: str, z: Array) -> list[float]:
-        """Arc lengths at which what interrupts a beam begins, in the structure's order, of unknowns z (n,)."""
+        """Arc lengths of knots, places and wraps along a beam, in the structure's order, for unknowns z (n,)."""
         where, wraps = self.layout.places, {wrap.contact: wrap for wrap in self.structure.wraps(beam)}
         places = []
         for item in self.structure.order[beam]:
@@ -235,11 +235,11 @@ class Equations:
         return places
 
     def begins(self, beam: str, z: Array) -> list[float]:
-        """Arc lengths at which a beam's pieces begin, of unknowns z (n,)."""
+        """Arc lengths of the starts of a beam's pieces, for unknowns z (n,)."""
         return [float(begin[0]) for begin in self._borders(self.model.strips[beam], z[:, None])[0]]
 
     def _spread(self, strip: Strip, a: Columns, b: Columns, lam: Columns) -> Columns:
-        """The distributed load (2, K) on a piece, which no end of one lies within."""
+        """Distributed load (2, K) on a piece, constant over the piece."""
         middle, total = 0.5 * float((a[0] + b[0]).real), np.zeros((2, len(lam)), dtype=lam.dtype)
         for load, begin, end in strip.spread:
             if begin < middle < end:
@@ -249,7 +249,7 @@ class Equations:
         return total
 
     def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns, spread: Columns, guess: Guess) -> Part:
-        """A piece, from its start's state (6, K), with the load on it (2, K)."""
+        """A piece with the start state (6, K) and the load (2, K)."""
         q = np.concatenate([start, [a, b], spread])
         real = np.ascontiguousarray(q[:, 0].real)
         nodes = real[6] + (real[7] - real[6]) * rule(self.nodes).points
@@ -260,15 +260,15 @@ class Equations:
         return Part(a, b, start, end, spread, solved)
 
     def _end(self, out: Evaluation, strip: Strip, which: str, state: Columns) -> None:
-        """What holds at a beam's end, and what the beam does there; forces are looked at where contacts are known."""
+        """Rows of a beam's end except the forces, which follow once the contacts are known."""
         end, sign = (strip.start, 1.0) if which == "start" else (strip.end, -1.0)
-        out.ends[strip.name, which] = Held(state[:2], sign * state[4:6], sign * state[3])
+        out.ends[strip.name, which] = EndAction(state[:2], sign * state[4:6], sign * state[3])
         if end.point is not None:
             out.rows += list(state[:2] - out.moved(self.model.scene.body_of(end.point), self.model.rest(end.point)))
         out.rows.append(state[2] - out.angle(strip.name, which) if end.welded else state[3])
 
 
 def unit(direction: tuple[float, float]) -> Array:
-    """A direction (2,) of length one."""
+    """Unit vector (2,) of a direction."""
     vector = np.array(direction)
     return np.asarray(vector / float(np.hypot(*vector)))

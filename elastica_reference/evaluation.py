@@ -1,6 +1,6 @@
-"""Everything that follows from the unknowns, as it is gathered.
+"""All quantities that follow from the unknowns.
 
-Numbers are columns (K,), one for each derivative, and vectors (k, K).
+Scalars are columns (K,), one column per derivative, and vectors (k, K).
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from elastica_reference.model import Model
 from elastica_reference.spectral import Piece
 
 Columns = NDArray[Any]
-"""Numbers (K,), or (k, K), one column for each derivative."""
+"""Scalars (K,) or vectors (k, K), one column per derivative."""
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A piece of a beam from ``a`` to ``b`` (K,): states ``start`` (6, K) and ``end`` (4, K), and what was solved.
+    """A piece of a beam from ``a`` to ``b`` (K,): states ``start`` (6, K) and ``end`` (4, K), and the solution.
 
-    ``spread`` (2, K) is the distributed load on it.
+    ``spread`` (2, K) is the distributed load on the piece.
     """
 
     a: Columns
@@ -35,19 +35,19 @@ class Part:
 
     @property
     def force(self) -> Columns:
-        """Internal force (2, K) at its start."""
+        """Internal force (2, K) at the start."""
         return self.start[4:]
 
     @property
     def end_force(self) -> Columns:
-        """Internal force (2, K) at its end."""
+        """Internal force (2, K) at the end."""
         force: Columns = self.start[4:] - self.spread * (self.b - self.a)
         return force
 
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """Where a beam lies on a circle: from ``a`` to ``b`` (K,).
+    """Zone of a beam on a circle, from ``a`` to ``b`` (K,).
 
     ``place`` (2, K) and ``angle`` (K,) of the beam at a; internal force (2, K) ``before`` and ``after`` the zone, and
     just inside its ``first`` and ``last`` end.
@@ -64,8 +64,8 @@ class Zone:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
-    """What a beam's end does to what holds it: at ``place`` (2, K) a ``force`` (2, K) and a ``moment`` (K,)."""
+class EndAction:
+    """Action of a beam's end on its support: ``force`` (2, K) at ``place`` (2, K) and ``moment`` (K,)."""
 
     place: Columns
     force: Columns
@@ -74,20 +74,20 @@ class Held:
 
 @dataclass
 class Evaluation:
-    """Everything at some unknowns.
+    """All quantities for given unknowns.
 
     Attributes:
         model: the mechanism.
         rows: the equations, zero at equilibrium.
         placements: displacement and rotation (3, K) of every body's reference.
-        on_body: force and moment (3, K) about that reference that beams, contacts, loads and drives exert on a body.
+        on_body: force and moment (3, K) on a body, about its reference, of beams, contacts, loads and drives.
         parts: the pieces of every beam.
-        ends: by (beam, "start" or "end") what it does there.
-        resultants: by contact the force (2, K) on its beam; of two beams on ``Meeting.beam``.
-        centres: of circles (2, K), by contact.
-        zones: by contact.
-        turnings: by beam and knot the place of its turning among the unknowns, and the row in which a couple on it
-            would stand.
+        ends: action of a beam's end, by (beam, "start" or "end").
+        resultants: force (2, K) of a contact on its beam; for two beams on ``Meeting.beam``.
+        centres: centres of circles (2, K), by contact.
+        zones: zones of wraps, by contact.
+        turnings: position of a knot's rotation among the unknowns, and number of the row for a couple, by beam and
+            knot.
     """
 
     model: Model
@@ -95,28 +95,28 @@ class Evaluation:
     placements: dict[str, Columns] = field(default_factory=dict)
     on_body: dict[str, Columns] = field(default_factory=dict)
     parts: dict[str, list[Part]] = field(default_factory=dict)
-    ends: dict[tuple[str, str], Held] = field(default_factory=dict)
+    ends: dict[tuple[str, str], EndAction] = field(default_factory=dict)
     resultants: dict[str, Columns] = field(default_factory=dict)
     centres: dict[str, Columns] = field(default_factory=dict)
     zones: dict[str, Zone] = field(default_factory=dict)
     turnings: dict[tuple[str, float], tuple[int, int]] = field(default_factory=dict)
 
     def moved(self, body: str, rest: Array) -> Columns:
-        """Where a body's point that is at ``rest`` (2,) is now, (2, K)."""
+        """Current position (2, K) of a body's point with the reference position ``rest`` (2,)."""
         u, v, phi = self.placements[body]
         x, y = rest - self.model.reference(body)
-        # cos φ − 1 as −2 sin²(φ/2), which keeps small rotations exact
-        less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-        return np.stack([rest[0] + u + less * x - sin * y, rest[1] + v + sin * x + less * y])
+        # cos φ − 1 as −2 sin²(φ/2), exact for small rotations
+        cos_minus_one, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+        return np.stack([rest[0] + u + cos_minus_one * x - sin * y, rest[1] + v + sin * x + cos_minus_one * y])
 
     def turned(self, body: str, rest: Array) -> Columns:
-        """The way (2, K) from a body's reference to its point that is at ``rest`` (2,)."""
+        """Vector (2, K) from a body's reference to its point with the reference position ``rest`` (2,)."""
         phi = self.placements[body][2]
         x, y = rest - self.model.reference(body)
         return np.stack([np.cos(phi) * x - np.sin(phi) * y, np.sin(phi) * x + np.cos(phi) * y])
 
     def act(self, body: str, place: Columns, force: Columns, moment: Columns | float = 0.0) -> None:
-        """Let a force (2, K) at a place (2, K) and a moment (K,) act on a body."""
+        """Add a force (2, K) at a place (2, K) and a moment (K,) to the forces on a body."""
         arm = place - self.moved(body, self.model.reference(body))
         turning = moment + arm[0] * force[1] - arm[1] * force[0]
         self.on_body[body] = self.on_body[body] + np.stack([force[0], force[1], turning])
@@ -131,7 +131,7 @@ class Evaluation:
         return turned
 
     def real(self) -> Evaluation:
-        """One real column of everything."""
+        """The real part of the first column of all quantities."""
 
         def one(columns: Columns) -> Columns:
             return np.ascontiguousarray(columns[..., :1].real)
@@ -148,7 +148,7 @@ class Evaluation:
                 ]
                 for beam, parts in self.parts.items()
             },
-            ends={key: Held(one(end.place), one(end.force), one(end.moment)) for key, end in self.ends.items()},
+            ends={key: EndAction(one(end.place), one(end.force), one(end.moment)) for key, end in self.ends.items()},
             resultants={name: one(columns) for name, columns in self.resultants.items()},
             centres={name: one(columns) for name, columns in self.centres.items()},
             zones={

@@ -1,4 +1,4 @@
-"""Where the unknowns of a structure stand."""
+"""Positions of the unknowns of a structure."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ from elastica_reference.structure import Meeting, Structure, Wrap
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Where every unknown stands in z.
+    """Positions of the unknowns in z.
 
     Attributes:
-        bodies, drives: by name the freedoms, and the reaction.
-        forces: P by contact; wraps have none.
-        places: by (contact, beam) the arc length of a place, for wraps by (contact, "begin") and (contact, "end").
-        pieces: by beam, one slice of six for each piece.
-        size: how many there are.
+        bodies, drives: degrees of freedom of bodies and reactions of drives, by name.
+        forces: P by contact, except wraps.
+        places: arc length of a place by (contact, beam), for wraps by (contact, "begin") and (contact, "end").
+        pieces: six unknowns per piece, by beam.
+        size: number of unknowns.
     """
 
     bodies: Mapping[str, slice]
@@ -28,7 +28,7 @@ class Layout:
 
 
 def layout(model: Model, structure: Structure) -> Layout:
-    """The unknowns of a structure."""
+    """The layout of a structure's unknowns."""
     size = 0
 
     def take(n: int) -> slice:

@@ -1,13 +1,13 @@
-"""The march from rest through a scene's stations, contact by contact.
+"""Load stepping from rest through a scene's stations, with changes of contact.
 
-From one state to the next the load or drive grows by steps that Newton's method can take.  After each the state is
-looked over: a contact that would pull opens, lines that overlap close a contact, a beam that would cut into a circle
-beside the place where it touches lies along it.  Where that happened is found as an equilibrium at which the new
-contact's force, or the old one's, is zero; from there it goes on.
+The load or drive grows by steps within reach of Newton's method. After every step the contacts are checked. A contact
+in tension opens, and overlapping lines close a contact. A beam about to cut into a circle beside the place of contact
+wraps around the circle. The change is located as the equilibrium with a zero force of the new or old contact, and
+stepping continues from there.
 
-Every state on the way must be a minimum of the energy (:mod:`elastica_reference.stability`), and nothing may have been
-passed since the one before (:mod:`elastica_reference.passing`).  The march ends at a fold or a bifurcation, and also
-where two beams would lie along each other or one contact be closed at two places at once.
+Every state has to be a minimum of the energy (:mod:`elastica_reference.stability`), and no beam may have passed
+through another or through a circle (:mod:`elastica_reference.passing`). Load stepping ends at a fold or a
+bifurcation. It also ends where two beams would lie along each other, or a contact would close at two places at once.
 """
 
 import logging
@@ -17,42 +17,42 @@ import time
 from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError, StationAnswer
 from cprbm_scene.solving import requirements, station_reached
 from cprbm_scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
-from elastica_reference.changes import open_first, reform, slide_onto_end
+from elastica_reference.changes import change_form, open_first_contact, slide_onto_end
 from elastica_reference.closings import close_first
 from elastica_reference.gaps import overlaps
-from elastica_reference.model import modelled
-from elastica_reference.newton import LostError, checked
-from elastica_reference.passing import passes
-from elastica_reference.probing import answered
+from elastica_reference.model import model_of
+from elastica_reference.newton import LostError, residual_with_more_points
+from elastica_reference.passing import passed_through
+from elastica_reference.probing import station_answer
 from elastica_reference.restructure import NotCoveredError
 from elastica_reference.settings import Settings
 from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Wrap
-from elastica_reference.way import Way
+from elastica_reference.way import Stepping
 
 _SAYS = logging.getLogger(__name__)
 
-_OVERLAP = 1e-10  # of the unit of length
-_FIRST_STEP = 0.2  # of the way to the first station
-_CHANGES = 40  # of structure between two stations
+_OVERLAP = 1e-10  # units of length
+_FIRST_STEP = 0.2  # share of the distance to the first station
+_CHANGES = 40  # changes of structure between two stations
 
 
 def answer(scene: Scene, settings: Settings | None = None) -> Answer:
-    """The exact answer to a scene in the theory of bending without stretch and shear.
+    """Exact answer to a scene in the theory of bending without stretch and shear.
 
     Args:
-        scene: the question.
+        scene: the problem statement.
         settings: numerical choices.
 
     Returns:
-        The stations up to where the solution holds; its ending is NOT_COVERED where one is missing. Values are
+        The stations up to the last with a solution; the ending is NOT_COVERED if a station is missing. Values are
         read-only arrays in SI, of the shapes in :mod:`cprbm_scene.answer`.
 
     Raises:
         SceneError: the scene has a record without equations; the error names every key.
 
     Source:
-        Euler's elastica with contact, by Gauss's collocation; nothing is discretised but the integration.
+        Euler's elastica with contact, by Gauss collocation; only the integration is discretised.
 
     Example:
         >>> import elastica_reference
@@ -64,16 +64,16 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     refuse(scene)
     chosen = settings or Settings()
     began = time.perf_counter()
-    way = Way(modelled(scene), chosen)
+    stepping = Stepping(model_of(scene), chosen)
     stations: list[StationAnswer] = []
     ending, sentence = Ending.COMPLETED, ""
     try:
         for stage in scene.stages:
-            way.begin(stage)
+            stepping.begin(stage)
             step = 0.0
             for station in stage.stations:
-                step = _advance(way, station / way.unit, step)
-                stations.append(_certified(way, station))
+                step = _advance(stepping, station / stepping.unit, step)
+                stations.append(_certified(stepping, station))
                 station_reached(_SAYS, scene, len(stations), stations[-1])
     except NotCoveredError as error:
         ending, sentence = Ending.NOT_COVERED, f"{error}."
@@ -84,18 +84,18 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         ending=ending,
         sentence=sentence,
         stations=tuple(stations),
-        events=tuple(way.events),
+        events=tuple(stepping.events),
         seconds=time.perf_counter() - began,
     )
 
 
 def refuse(scene: Scene) -> None:
-    """Refuse records for which there are no equations.
+    """Refuse records without equations.
 
     Raises:
         SceneError: the scene has such records; the error names every key.
     """
-    found = [
+    refused = [
         *(
             (mistake.key, mistake.found, mistake.allowed)
             for mistakes in requirements(scene).values()
@@ -115,7 +115,7 @@ def refuse(scene: Scene) -> None:
             if isinstance(contact, EdgeContact | SelfContact)
         ),
         *(
-            (f"contacts.{name}.thick", "edges of a thickness that varies", "thick = false, or a constant thickness")
+            (f"contacts.{name}.thick", "edges of varying thickness", "thick = false, or a constant thickness")
             for name, contact in scene.contacts.items()
             if isinstance(contact, BeamContact)
             and contact.thick
@@ -132,93 +132,99 @@ def refuse(scene: Scene) -> None:
             if probe.of in scene.bodies and probe.quantity == "reaction"
         ),
     ]
-    if found:
+    if refused:
         raise SceneError(
-            [Mistake(key, what, f"{known}, for the exact solution", scene.file) for key, what, known in found]
+            [Mistake(key, value, f"{allowed}, for the exact solution", scene.file) for key, value, allowed in refused]
         )
 
 
-def _certified(way: Way, station: float) -> StationAnswer:
-    """A station's answer, whose equations hold with more Gauss points too.
+def _certified(stepping: Stepping, station: float) -> StationAnswer:
+    """A station's answer, whose equations also hold with more Gauss points.
 
     Raises:
-        NotCoveredError: they do not.
+        NotCoveredError: the residual with more Gauss points is too large.
     """
     try:
-        finer = checked(way.state, way.settings.further)
+        finer = residual_with_more_points(stepping.state, stepping.settings.further)
     except LostError:
         finer = math.inf
-    if not finer <= way.settings.tolerance:
-        raise NotCoveredError(f"at {station:g} more Gauss points are needed: a residual of {finer:.1e} is left")
-    return answered(way, station, finer)
+    if not finer <= stepping.settings.tolerance:
+        raise NotCoveredError(f"at {station:g} more Gauss points are needed: their residual is {finer:.1e}")
+    return station_answer(stepping, station, finer)
 
 
-def _advance(way: Way, target: float, step: float) -> float:
-    """Go on to a value of what is stepped, no dimension; the size of step that served last.
+def _advance(stepping: Stepping, target: float, step: float) -> float:
+    """Step to a dimensionless ``target``; returns the last successful step size.
 
     Raises:
-        NotCoveredError: the path leads beyond what the equations cover.
+        NotCoveredError: the path leads beyond the equations.
     """
-    whole, changes = target - way.lam, 0
-    largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
+    whole, changes = target - stepping.lam, 0
+    largest, smallest = stepping.settings.largest_step * abs(whole), stepping.settings.smallest_step * abs(whole)
     step = min(largest, step or _FIRST_STEP * abs(whole))
     reason, tried = "", 0
-    while way.lam != target:
+    while stepping.lam != target:
         tried += 1
-        goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
+        goal = target if abs(target - stepping.lam) <= step else stepping.lam + math.copysign(step, whole)
         try:
-            trial = way.attempt(goal)
-            if not _examined(way, trial):
+            trial = stepping.attempt(goal)
+            if not _accept_or_change(stepping, trial):
                 changes += 1
             step = min(1.5 * step, largest)
         except LostError as error:
             reason = f", where {error}" if str(error) else ""
-            if slide_onto_end(way, goal):
+            if slide_onto_end(stepping, goal):
                 changes += 1
             else:
                 step *= 0.4
-        if tried >= way.settings.steps and way.lam != target:
+        if tried >= stepping.settings.steps and stepping.lam != target:
             raise NotCoveredError(
-                f"{way.settings.steps} steps lead no farther than {way.lam * way.unit:.6g} of {way.stepped}"
+                f"{stepping.settings.steps} steps lead no farther than {stepping.lam * stepping.unit:.6g} of "
+                f"{stepping.stepped}"
             )
         if step < smallest or changes > _CHANGES:
-            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}{reason}")
+            raise NotCoveredError(
+                f"no equilibrium was found beyond {stepping.lam * stepping.unit:.6g} of {stepping.stepped}{reason}"
+            )
     return step
 
 
-def _examined(way: Way, trial: State) -> bool:
-    """Accept a trial if nothing is wrong with it, else go to where something changes and say False.
+def _accept_or_change(stepping: Stepping, trial: State) -> bool:
+    """Accept a trial without changes of contact and return True; else step to the first change and return False.
 
     Raises:
-        LostError: that was not found.
-        NotCoveredError: there are no equations for it.
+        LostError: the change was not found.
+        NotCoveredError: there are no equations for the change.
     """
-    if open_first(way, trial) or reform(way, trial):
+    if open_first_contact(stepping, trial) or change_form(stepping, trial):
         return False
-    found = overlaps(way.model, trial, way.known, _touched(trial), way.sides, _OVERLAP)
-    if found:
+    overlapping = overlaps(stepping.model, trial, stepping.known, _closed_ranges(trial), stepping.sides, _OVERLAP)
+    if overlapping:
         try:
-            close_first(way, trial, found)
+            close_first(stepping, trial, overlapping)
         except LostError as error:
-            raise LostError(f"{found[0].contact} touches") from error
+            raise LostError(f"{overlapping[0].contact} touches") from error
         return False
-    if passes(way.model, way.known, trial):
+    if passed_through(stepping.model, stepping.known, trial):
         raise LostError
-    way.accept(trial)
+    stepping.accept(trial)
     return True
 
 
-def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
-    """By contact and beam, from where to where it touches; ends that touch are looked at like any place."""
-    found = {}
+def _closed_ranges(state: State) -> dict[tuple[str, str], tuple[float, float]]:
+    """First and last arc length of every closed place, by contact and beam.
+
+    Ends in contact are checked like other places.
+    """
+    ranges = {}
     for name, touch in state.structure.touches.items():
         if isinstance(touch, Wrap):
-            found[name, touch.beam] = state.wrapped(touch)
+            ranges[name, touch.beam] = state.wrap_range(touch)
             continue
         if touch.at is None:
             s = state.places[name, touch.beam]
-            found[name, touch.beam] = (s, s)
+            ranges[name, touch.beam] = (s, s)
         if isinstance(touch, Meeting):
             sigma = state.places[name, touch.onto]
-            found[name, touch.onto] = (sigma, sigma)
-    return found
+            ranges[name, touch.onto] = (sigma, sigma)
+    return ranges

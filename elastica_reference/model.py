@@ -1,4 +1,4 @@
-"""A scene without dimension: beams by arc length, bodies and what acts on them.
+"""Dimensionless model of a scene: beams by arc length, bodies and loads.
 
 =======  ==================================================================
 symbol   meaning
@@ -23,7 +23,7 @@ from elastica_reference.spectral import Law
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """A beam's end: the ``point`` that holds it (None for a free end), and whether it is ``welded`` there."""
+    """A beam's end: the ``point`` of a body that holds it (None for a free end), and True if ``welded``."""
 
     point: str | None
     welded: bool
@@ -31,18 +31,18 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Strip:
-    """A beam without dimension.
+    """A dimensionless beam.
 
     Attributes:
-        name: the beam's.
-        line: its stress-free neutral line.
-        beam: its record, whose sizes are in metres.
-        knots: arc lengths strictly inside at which thickness, width or the stress-free curvature have kinks, or a
-            force acts, or a distributed load begins or ends.
-        stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is without dimension.
+        name: name of the beam.
+        line: stress-free neutral line.
+        beam: record of the scene, in metres.
+        knots: inner arc lengths with a kink of thickness, width or stress-free curvature, a point force, or an end of
+            a distributed load.
+        stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is dimensionless.
         unit: ℓ, m.
-        start, end: its ends.
-        spread: distributed loads by name, and from where to where they act.
+        start, end: ends of the beam.
+        spread: names and ranges of distributed loads.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Strip:
 
     @property
     def length(self) -> float:
-        """Its arc length."""
+        """Arc length of the beam."""
         return self.line.length
 
     def rigidity(self, s: Array) -> Array:
@@ -66,40 +66,40 @@ class Strip:
         return np.asarray(self.stiffness * self.beam.width_at(u) * self.beam.thickness_at(u) ** 3 / 12.0)
 
     def rigidity_slope(self, s: Array) -> Array:
-        """d(EI)/ds, in the piece that :meth:`compliance_slope` speaks of."""
+        """d(EI)/ds (n,), in the piece between two knots with the mean of the arc lengths."""
         width, thickness = self._relative_slopes(s)
         return np.asarray(self.rigidity(s) * (width + 3.0 * thickness))
 
     def rigidity_second(self, s: Array) -> Array:
-        """d²(EI)/ds² there: of w t³ with w and t straight."""
+        """d²(EI)/ds² (n,) there, for w t³ with linear w and t."""
         width, thickness = self._relative_slopes(s)
         return np.asarray(self.rigidity(s) * 6.0 * thickness * (width + thickness))
 
     def compliance(self, s: Array) -> Array:
-        """c."""
+        """c (n,) at arc lengths ``s`` (n,)."""
         return np.asarray(1.0 / self.rigidity(s))
 
     def compliance_slope(self, s: Array) -> Array:
-        """dc/ds in the piece, between two knots, in which the middle of the arc lengths lies."""
+        """dc/ds (n,), in the piece between two knots with the mean of the arc lengths."""
         width, thickness = self._relative_slopes(s)
         return np.asarray(-self.compliance(s) * (width + 3.0 * thickness))
 
     def half_thickness(self, s: Array) -> Array:
-        """Half the thickness (n,); beyond the ends what it is there."""
+        """Half the thickness (n,), constant beyond the ends."""
         return np.asarray(0.5 * self.beam.thickness_at(np.clip(np.asarray(s) / self.length, 0.0, 1.0)) / self.unit)
 
     def half_thickness_slope(self, s: float) -> float:
-        """How half the thickness grows at an arc length."""
+        """Derivative of half the thickness at an arc length."""
         return 0.5 * self._slopes(s)[1] / self.unit
 
     def _relative_slopes(self, s: Array) -> tuple[Array, Array]:
-        """w'/w and t'/t (n,), in the piece between two knots in which the middle of the arc lengths lies."""
+        """w'/w and t'/t (n,), in the piece between two knots with the mean of the arc lengths."""
         u = np.asarray(s) / self.length
         width, thickness = self._slopes(float(np.mean(s)))
         return np.asarray(width / self.beam.width_at(u)), np.asarray(thickness / self.beam.thickness_at(u))
 
     def _slopes(self, s: float) -> tuple[float, float]:
-        """dw/ds and dt/ds, in m per unit of length, between the knots round an arc length."""
+        """dw/ds and dt/ds, in m per unit of length, between the knots around an arc length."""
         fence = np.array([0.0, *self.knots, self.length])
         k = int(np.clip(np.searchsorted(fence, s) - 1, 0, len(fence) - 2))
         u, step = fence[k : k + 2] / self.length, fence[k + 1] - fence[k]
@@ -108,19 +108,19 @@ class Strip:
 
     @property
     def law(self) -> Law:
-        """What a piece of it obeys."""
+        """Curvature and compliance of the beam's pieces."""
         return Law(self.line.curvature, self.line.curvature_slope, self.compliance, self.compliance_slope)
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A scene's beams and moving bodies, without dimension.
+    """Dimensionless beams and moving bodies of a scene.
 
     Attributes:
-        scene: the question.
+        scene: the problem statement.
         unit_length, unit_moment: ℓ, m, and S, N·m.
         strips: the beams by name.
-        moving: names of the bodies that move, with how many freedoms each has: 3, for a slide 1, a pin in a slot 2.
+        moving: degrees of freedom of moving bodies by name: 3, 1 for a slide, 2 for a pin in a slot.
     """
 
     scene: Scene
@@ -135,16 +135,16 @@ class Model:
         return self.unit_moment / self.unit_length
 
     def rest(self, point: str) -> Array:
-        """A body's point (2,) at rest."""
+        """Reference position (2,) of a body's point."""
         return np.array(self.scene.bodies[self.scene.body_of(point)].points[point]) / self.unit_length
 
     def reference(self, body: str) -> Array:
-        """The point (2,) of a body, at rest, about which its moments are taken: the mean of those that it names."""
+        """Reference point (2,) for a body's moments: the mean of its named points."""
         return np.asarray(np.mean(np.array(list(self.scene.bodies[body].points.values())), axis=0) / self.unit_length)
 
 
-def modelled(scene: Scene) -> Model:
-    """A scene's model."""
+def model_of(scene: Scene) -> Model:
+    """Model of a scene."""
     lengths = {name: neutral_line(beam.curve, 1.0).length for name, beam in scene.beams.items()}
     unit = max(lengths.values())
     rigidities = {

@@ -1,14 +1,14 @@
-"""Whether something was passed between two states without being met.
+"""Check for a beam passing through another beam or a circle between two states.
 
 =======  ==================================================================================
 symbol   meaning
 =======  ==================================================================================
 p, q     places before and after, relative to a circle's centre or to an end of another beam
-t        share of the way between the two states, on which places go straight
+t        share of the way between the two states, with places moving along straight lines
 =======  ==================================================================================
 
-Two states that overlap nowhere may have a circle or another beam's end between them.  A step on which places that go
-straight come deep into a circle, or an end goes through a line, is too long to say.
+Two states without overlap may have a circle or another beam's end between them. A step is too long to decide if
+places, moving straight, come deep into a circle, or if an end goes through a line.
 """
 
 import numpy as np
@@ -19,12 +19,12 @@ from elastica_reference.gaps import SAMPLES
 from elastica_reference.model import Model
 from elastica_reference.state import Known
 
-_ON = 1e-5  # of the unit of length: more than a line is away from its chords
-_DEEP = 0.5  # of the distance at which a beam touches a circle
+_ON = 1e-5  # units of length: larger than the distance between a line and its chords
+_DEEP = 0.5  # times the distance at contact with a circle
 
 
-def passes(model: Model, before: Known, after: Known) -> bool:
-    """Whether a beam that may touch something could have gone through it between two states."""
+def passed_through(model: Model, before: Known, after: Known) -> bool:
+    """True if a beam may have passed through a circle or another beam between two states."""
     for name, contact in model.scene.contacts.items():
         if isinstance(contact, CircleContact):
             strip = model.strips[contact.beam]
@@ -35,18 +35,18 @@ def passes(model: Model, before: Known, after: Known) -> bool:
                 return True
             continue
         assert isinstance(contact, BeamContact)
-        for one, other in (contact.between, contact.between[::-1]):
-            sigma = np.linspace(0.0, model.strips[other].length, SAMPLES)
-            for end in (0.0, model.strips[one].length):
+        for first, second in (contact.between, contact.between[::-1]):
+            sigma = np.linspace(0.0, model.strips[second].length, SAMPLES)
+            for end in (0.0, model.strips[first].length):
                 place = np.array([end])
-                p, q = (known.along(other, sigma)[:2] - known.along(one, place)[:2] for known in (before, after))
+                p, q = (known.along(second, sigma)[:2] - known.along(first, place)[:2] for known in (before, after))
                 if _through_line(p, q):
                     return True
     return False
 
 
 def _through_circle(p: Array, q: Array, distance: float) -> bool:
-    """Whether places (2, n) come deep into a circle about the origin, or the line through them sweeps over it."""
+    """True if places (2, n) come deep into a circle about the origin, or their line sweeps over the origin."""
     d = q - p
     t = np.clip(-np.sum(p * d, axis=0) / np.maximum(np.sum(d * d, axis=0), np.finfo(float).tiny), 0.0, 1.0)
     if np.min(np.hypot(*(p + t * d))) < _DEEP * distance:
@@ -61,10 +61,10 @@ def _angle(a: Array, b: Array) -> Array:
 
 
 def _through_line(p: Array, q: Array) -> bool:
-    """Whether the origin goes through the line whose places go from p (2, n) to q.
+    """True if the origin passes through the line whose places move from p (2, n) to q.
 
-    It lies on a chord from P to P + D where P × D = 0, quadratic in t, and between the chord's ends.  What is on the
-    line before or after, as an end that touches, does not go through it.
+    The origin is on a chord from P to P + D if P × D = 0, quadratic in t, and if it lies between the chord's ends. An
+    origin on the line before or after, such as an end in contact, does not count.
     """
     P, P_t = p[:, :-1], (q - p)[:, :-1]
     D, D_t = np.diff(p), np.diff(q - p)
@@ -73,7 +73,7 @@ def _through_line(p: Array, q: Array) -> bool:
     )
     c0, c1, c2 = _cross(P, D), _cross(P, D_t) + _cross(P_t, D), _cross(P_t, D_t)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # the two roots without cancellation; what is no root is not finite
+        # both roots without cancellation; missing roots are not finite
         w = -0.5 * (c1 + np.copysign(np.sqrt(c1 * c1 - 4.0 * c0 * c2), c1))
         roots = np.stack([w / c2, c0 / w])
     t = np.where(np.isfinite(roots) & (roots > 0.0) & (roots <= 1.0), roots, np.nan)

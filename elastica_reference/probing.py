@@ -1,4 +1,4 @@
-"""The numbers a scene asks for, read off a state; meanings in :mod:`cprbm_scene.answer`."""
+"""Probed quantities of a state, as :mod:`cprbm_scene.answer` defines them."""
 
 import numpy as np
 
@@ -13,27 +13,27 @@ from elastica_reference.restructure import NotCoveredError
 from elastica_reference.spectral import rule
 from elastica_reference.state import State
 from elastica_reference.structure import Meeting, Wrap
-from elastica_reference.way import Way
+from elastica_reference.way import Stepping
 
-_FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings
+_FLOOR = 1e-13  # of a residual, dimensionless: about a hundred roundings
 
 
-def answered(way: Way, value: float, finer: float) -> StationAnswer:
+def station_answer(stepping: Stepping, value: float, finer: float) -> StationAnswer:
     """A station's answer; ``finer`` is the largest row with more Gauss points."""
-    model, state, scene = way.model, way.state, way.model.scene
-    # a guide holds a slide in all but one way; what is left of that is a row of the equations
+    model, state, scene = stepping.model, stepping.state, stepping.model.scene
+    # a guide constrains a slide; the remaining direction is a row of the equations
     free = [body for body, freedoms in model.moving.items() if freedoms == 3]
-    left = max((float(np.max(np.abs(state.found.on_body[body]))) for body in free), default=0.0)
+    unbalanced = max((float(np.max(np.abs(state.evaluation.on_body[body]))) for body in free), default=0.0)
     certificate = Certificate(
         residual=max(finer, state.residual),
         residual_floor=_FLOOR,
         violation=state.residual,
         penetration=0.0,
         complementarity=0.0,
-        force_balance=left,
-        moment_balance=left,
-        smallest_curvature=way.curvature,
-        iterations=way.states,
+        force_balance=unbalanced,
+        moment_balance=unbalanced,
+        smallest_curvature=stepping.curvature,
+        iterations=stepping.states,
     )
     shapes = {}
     for name, strip in model.strips.items():
@@ -41,12 +41,12 @@ def answered(way: Way, value: float, finer: float) -> StationAnswer:
         x, y = state.along(name, s)[:2] * model.unit_length
         shapes[name] = Shape(frozen_array(s * model.unit_length), frozen_array(x), frozen_array(y))
     return StationAnswer(
-        stage=way.stage,
+        stage=stepping.stage,
         value=value,
         values=frozendict(
             {
                 probe.name: frozen_array(
-                    _value(scene, model, state, probe, way.closed_at) if probe.asked_in(way.stage) else []
+                    _value(scene, model, state, probe, stepping.closed_at) if probe.asked_in(stepping.stage) else []
                 ).ravel()
                 for probe in scene.probes
             }
@@ -60,14 +60,18 @@ def answered(way: Way, value: float, finer: float) -> StationAnswer:
 def _value(
     scene: Scene, model: Model, state: State, probe: Probe, closed_at: dict[str, float]
 ) -> Array | float | list[float]:
-    found, touches = state.found, state.structure.touches
+    evaluation, touches = state.evaluation, state.structure.touches
     match probe.quantity:
         case "displacement":
             return _displacement(model, state, probe.of) * model.unit_length
         case "rotation":
-            return float(found.placements[probe.of][2, 0])
+            return float(evaluation.placements[probe.of][2, 0])
         case "force":
-            return float(np.hypot(*found.resultants[probe.of][:, 0])) * model.unit_force if probe.of in touches else 0.0
+            return (
+                float(np.hypot(*evaluation.resultants[probe.of][:, 0])) * model.unit_force
+                if probe.of in touches
+                else 0.0
+            )
         case "centre":
             return [_centre(state, probe.of, scene.contacts[probe.of].beams[0]) * model.unit_length] if (
                 probe.of in touches
@@ -99,16 +103,16 @@ def _value(
         case "potential_energy":
             return _energy(model, state) * model.unit_moment
         case "angle" | "moment":
-            raise NotCoveredError("there are no equations for stops here")
+            raise NotCoveredError("the exact solution has no equations for stops")
 
 
 def _displacement(model: Model, state: State, point: str) -> Array:
     rest = model.rest(point)
-    return np.asarray(state.found.moved(model.scene.body_of(point), rest)[:, 0] - rest)
+    return np.asarray(state.evaluation.moved(model.scene.body_of(point), rest)[:, 0] - rest)
 
 
 def _centre(state: State, contact: str, beam: str) -> float:
-    """Arc length of a contact along its first beam, weighted by the magnitudes of its forces."""
+    """Centre of pressure of a contact, as arc length along its first beam."""
     touch = state.structure.touches[contact]
     begin, end = _ends(state, contact, beam)
     if not isinstance(touch, Wrap):
@@ -123,7 +127,7 @@ def _centre(state: State, contact: str, beam: str) -> float:
 def _ends(state: State, contact: str, beam: str) -> tuple[float, float]:
     touch = state.structure.touches[contact]
     if isinstance(touch, Wrap):
-        return state.wrapped(touch)
+        return state.wrap_range(touch)
     if touch.at is not None and touch.beam == beam:
         return touch.at, touch.at
     s = float(state.z[state.equations.layout.places[contact, beam]])
@@ -131,34 +135,34 @@ def _ends(state: State, contact: str, beam: str) -> tuple[float, float]:
 
 
 def _touching(model: Model, state: State) -> dict[str, Array]:
-    """Places (k, 2), m: between the neutral lines of two beams, on a circle on the line less half a thickness."""
-    found = {}
+    """Places (k, 2), m: midway between the neutral lines of two beams, or on the circle."""
+    places = {}
     for name, touch in state.structure.touches.items():
         contact = model.scene.contacts[name]
         begin, end = _ends(state, name, touch.beam)
         s = np.linspace(begin, end, 21) if end > begin else np.array([begin])
         line = state.along(touch.beam, s)[:2]
         if isinstance(contact, CircleContact):
-            centre = state.found.centres[name]
+            centre = state.evaluation.centres[name]
             arm = line - centre
             line = centre + arm * (contact.radius / model.unit_length) / np.hypot(*arm)
         else:
             assert isinstance(touch, Meeting)
             sigma = np.array([state.z[state.equations.layout.places[name, touch.onto]]])
             line = 0.5 * (line + state.along(touch.onto, sigma)[:2])
-        found[name] = frozen_array(line.T * model.unit_length)
-    return found
+        places[name] = frozen_array(line.T * model.unit_length)
+    return places
 
 
 def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
-    """Force and moment of the ground at a point, or of the drives of that point or body."""
+    """Reaction force and moment at a fixed point, or of the drives of a point or body."""
     model, force, moment = state.equations.model, np.zeros(2), 0.0
-    for (beam, which), held in state.found.ends.items():
+    for (beam, which), action in state.evaluation.ends.items():
         strip = model.strips[beam]
         end = strip.start if which == "start" else strip.end
         if end.point == name and scene.body_of(name) not in model.moving:
-            force = force - held.force[:, 0]
-            moment -= float(held.moment[0]) if end.welded else 0.0
+            force = force - action.force[:, 0]
+            moment -= float(action.moment[0]) if end.welded else 0.0
     for drive, index in state.equations.layout.drives.items():
         record, reaction = scene.drives[drive], float(state.z[index])
         if isinstance(record, DisplacementDrive) and record.point == name:
@@ -169,11 +173,11 @@ def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
 
 
 def _energy(model: Model, state: State) -> float:
-    """∫ m² c/2 ds less the work of the dead loads."""
+    """∫ m² c/2 ds minus the work of dead loads."""
     energy, gauss = 0.0, rule(state.equations.nodes)
-    for beam, parts in state.found.parts.items():
+    for beam, parts in state.evaluation.parts.items():
         spans = [(float(part.a[0]), float(part.b[0])) for part in parts]
-        spans += [state.wrapped(wrap) for wrap in state.structure.wraps(beam)]
+        spans += [state.wrap_range(wrap) for wrap in state.structure.wraps(beam)]
         for a, b in spans:
             s = a + (b - a) * gauss.points
             m = state.along(beam, s)[3]
@@ -187,7 +191,7 @@ def _energy(model: Model, state: State) -> float:
         elif isinstance(load, DistributedLoad):
             strip = model.strips[load.beam]
             begin, stop = (share * strip.length for share in load.along)
-            for part in state.found.parts[load.beam]:
+            for part in state.evaluation.parts[load.beam]:
                 a, b = float(part.a[0]), float(part.b[0])
                 if begin < 0.5 * (a + b) < stop:
                     s = a + (b - a) * gauss.points
@@ -196,5 +200,5 @@ def _energy(model: Model, state: State) -> float:
         elif isinstance(load, Force):
             energy -= value * float(_displacement(model, state, load.point) @ unit(load.direction))
         elif isinstance(load, Moment):
-            energy -= value * float(state.found.placements[load.body][2, 0])
+            energy -= value * float(state.evaluation.placements[load.body][2, 0])
     return energy

@@ -1,4 +1,4 @@
-"""From one structure to the next: contacts that close, open, or touch in another way."""
+"""Structures of closed contacts at given places."""
 
 import math
 from collections.abc import Mapping
@@ -14,18 +14,18 @@ from elastica_reference.state import Known
 from elastica_reference.structure import Meeting, Resting, Structure, Touch, Wrap
 
 Places = Mapping[tuple[str, str], float]
-"""Of a structure's contacts, by (contact, key) as in :class:`elastica_reference.layout.Layout`."""
+"""Places of contacts, by (contact, key) as in :class:`elastica_reference.layout.Layout`."""
 
 
 class NotCoveredError(Exception):
-    """The scene does something for which this solution has no equations; the text says what."""
+    """The solution has no equations for the scene's state; the text says which."""
 
 
-def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> Structure:
-    """The structure of some closed contacts at some places.
+def structure_of(model: Model, touches: Mapping[str, Touch], places: Places) -> Structure:
+    """The structure of closed contacts at given places.
 
     Raises:
-        NotCoveredError: a section has a kink, a load or a thickness that varies where the beam lies on a circle.
+        NotCoveredError: a section has a kink, a load or a varying thickness where the beam lies on a circle.
     """
     order: dict[str, tuple[float | str, ...]] = {}
     for beam, strip in model.strips.items():
@@ -35,7 +35,7 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
                 begin = 0.0 if touch.from_start else places[name, "begin"]
                 end = strip.length if touch.to_end else places[name, "end"]
                 if strip.beam.tapered and model.scene.contacts[name].thick:
-                    raise NotCoveredError(f"{beam} lies along the circle of {name} with an edge that is not round")
+                    raise NotCoveredError(f"{beam} lies along the circle of {name} with a varying thickness")
                 if strip.spread:
                     raise NotCoveredError(f"{beam} lies along the circle of {name} under a distributed load")
                 if any(begin <= knot <= end for knot in strip.knots):
@@ -49,11 +49,13 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
     return Structure(frozendict(touches), frozendict(order))
 
 
-def at_ends(known: Known, model: Model, touch: Touch, places: Places) -> tuple[Touch, dict[tuple[str, str], float]]:
-    """A touch whose place lies beyond an end of a beam, at that end, and the places; others as they are.
+def moved_to_ends(
+    known: Known, model: Model, touch: Touch, places: Places
+) -> tuple[Touch, dict[tuple[str, str], float]]:
+    """A touch with its place moved to an end of the beam if beyond, and the places.
 
     Raises:
-        LostError: an end that touches has slid off the other beam's end, perhaps in a step that is too long.
+        LostError: an end in contact slid off the other beam's end, possibly in a step too long.
     """
     kept = dict(places)
     if isinstance(touch, Wrap):
@@ -70,7 +72,7 @@ def at_ends(known: Known, model: Model, touch: Touch, places: Places) -> tuple[T
         return touch, kept
     if touch.at is not None:
         raise LostError(f"the place of {name} slides off the end of {touch.onto}")
-    # the end of the second beam touches the first one, which may run the other way
+    # the end of the second beam touches the first beam, which may run in the opposite direction
     del kept[name, touch.onto]
     angles = [float(known.along(beam, np.array([at]))[2, 0]) for beam, at in ((touch.beam, s), (touch.onto, sigma))]
     side = -touch.side if math.cos(angles[1] - angles[0]) > 0.0 else touch.side
@@ -81,8 +83,8 @@ def _within(model: Model, beam: str, s: float) -> float:
     return min(max(s, 0.0), model.strips[beam].length)
 
 
-def closed(model: Model, overlap: Overlap) -> tuple[Touch, dict[tuple[str, str], float]]:
-    """The touch that ends an overlap, and its places."""
+def touch_for(model: Model, overlap: Overlap) -> tuple[Touch, dict[tuple[str, str], float]]:
+    """The touch for an overlap, and its places."""
     strip = model.strips[overlap.beam]
     at = overlap.s if overlap.at_end else None
     places = {} if overlap.at_end else {(overlap.contact, overlap.beam): overlap.s}

@@ -1,4 +1,4 @@
-"""Numerical choices of the exact solution."""
+"""Numerical settings of the exact solution."""
 
 from typing import Annotated
 
@@ -6,16 +6,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class Settings(BaseModel):
-    """How closely the differential equations are satisfied.
+    """Accuracy of the solution of the differential equations.
 
     Attributes:
-        nodes: Gauss points of each piece of a beam.
-        further: how many more the result is checked with.
-        tolerance: largest residual of an equilibrium, without dimension, with either number of points.
-        largest_step: largest step of the load or drive, as a fraction of the way between two stations.
-        smallest_step: smallest one.
-        steps: most steps tried between two stations.
-        iterations: most Newton iterations of one equilibrium.
+        nodes: Gauss points of a piece of a beam.
+        further: additional Gauss points for the check of the result.
+        tolerance: largest dimensionless residual of an equilibrium, with either number of points.
+        largest_step: largest step of the load or drive, as a fraction of the distance between two stations.
+        smallest_step: smallest such step.
+        steps: largest number of steps between two stations.
+        iterations: largest number of Newton iterations of an equilibrium.
     """
 
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)

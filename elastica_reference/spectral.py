@@ -1,14 +1,14 @@
-"""One piece of a beam, from its start's state to its end's, by Gauss's collocation with exact derivatives.
+"""A piece of a beam, from start to end state, by Gauss collocation with exact derivatives.
 
 =========  =====================================================================================
 symbol     meaning
 =========  =====================================================================================
 a, b       arc lengths of the piece's start and end, h = b − a; s_i = a + h ξ_i
-ξ, w, B    Gauss's points in (0, 1), their weights, and B_ij = ∫₀^ξi of the j-th Lagrange polynomial
-x, y, θ, m place, tangent angle and bending moment
-Fx, Fy     internal force at the start, what lies beyond on what lies before
-Qx, Qy     distributed load, even in the piece
-κ0, c      stress-free curvature and 1/EI by arc length, with their derivatives κ0', c'
+ξ, w, B    Gauss points in (0, 1), weights, and B_ij = ∫₀^ξi of the j-th Lagrange polynomial
+x, y, θ, m position, tangent angle and bending moment
+Fx, Fy     internal force at the start, of the part beyond on the part before
+Qx, Qy     distributed load, constant in the piece
+κ0, c      stress-free curvature and 1/EI by arc length, with derivatives κ0', c'
 q          (x, y, θ, m, Fx, Fy, a, b) at the start and (Qx, Qy); e = (x, y, θ, m) at the end
 =========  =====================================================================================
 
@@ -19,8 +19,8 @@ Collocated, with g_j = κ0(s_j) + c(s_j) m_j and f_j = X_j sin θ_j − Y_j cos 
     m_i = m + h B_ij f_j,    0 = r_i = θ_i − θ − h B_ij g_j                                          (1)
     A = ∂r/∂θ = I − h² B diag(c) B diag(X cos θ + Y sin θ),    A dθ = −∂r/∂q dq                    (2)
 
-and e = (x + h w·cos θ, y + h w·sin θ, θ + h w·g, m + h w·f).  With p points e is right to order 2p in h (the
-superconvergence of Gauss's rule; Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.7).
+and e = (x + h w·cos θ, y + h w·sin θ, θ + h w·g, m + h w·f). With p points e has order 2p in h (superconvergence of
+Gauss's rule; Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.7).
 """
 
 from collections.abc import Callable
@@ -33,7 +33,7 @@ from cprbm_scene.answer import Array
 
 _ITERATIONS = 30
 _SETTLED = 1e-14
-_LARGEST = 1e3  # of a residual that Newton's method may still mend
+_LARGEST = 1e3  # largest residual within reach of Newton's method
 
 
 class UnsolvableError(ArithmeticError):
@@ -42,7 +42,7 @@ class UnsolvableError(ArithmeticError):
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """What a piece is made of: κ0, κ0', c and c' as functions of arc length (n,) -> (n,)."""
+    """Properties of a piece: κ0, κ0', c and c' as functions of arc length (n,) -> (n,)."""
 
     curvature: Callable[[Array], Array]
     curvature_slope: Callable[[Array], Array]
@@ -61,10 +61,10 @@ class Rule:
 
 @lru_cache(maxsize=8)
 def rule(p: int) -> Rule:
-    """Gauss's rule of ``p`` points on (0, 1) and its integration matrix."""
+    """Gauss rule of ``p`` points on (0, 1) and its integration matrix."""
     x, w = np.polynomial.legendre.leggauss(p)
-    # through Legendre's polynomials: the expansion of a Lagrange polynomial is (2k + 1)/2 w_j P_k(x_j), and
-    # ∫ P_k from −1 to x is (P_{k+1} − P_{k−1})/(2k + 1)
+    # by Legendre polynomials: the expansion of a Lagrange polynomial is (2k + 1)/2 w_j P_k(x_j), and ∫ P_k from −1 to x
+    # is (P_{k+1} − P_{k−1})/(2k + 1)
     V = np.polynomial.legendre.legvander(x, p)
     k = np.arange(p)
     expansion = (2.0 * k[:, None] + 1.0) / 2.0 * (w * V[:, :p].T)
@@ -86,12 +86,12 @@ class Piece:
 
 
 def piece(law: Law, q: Array, guess: Array) -> Piece:
-    """Integrate one piece.
+    """Solution of a piece.
 
     Args:
-        law: its curvature and compliance.
+        law: curvature and compliance of the piece.
         q: (x, y, θ, m, Fx, Fy, a, b, Qx, Qy).
-        guess: θ at Gauss's points, (p,).
+        guess: θ at the Gauss points, (p,).
 
     Raises:
         UnsolvableError: Newton's method does not converge from the guess.

@@ -3,12 +3,12 @@
 =======  ==========================================================================
 symbol   meaning
 =======  ==========================================================================
-t        chords between the points, summed; P(t) cubic between the points
+t        accumulated chords between the points; P(t) cubic between the points
 v        |P'| = ds/dt
 c        P' × P'', so that κ = c/v³;  c' = P' × P''',  c'' = P'' × P'''
 =======  ==========================================================================
 
-κ is smooth between the points and has a kink at each; there a beam is cut into pieces.
+κ is smooth between the points and has a kink at every point, where a beam is divided into pieces.
 """
 
 from typing import Literal
@@ -19,14 +19,14 @@ from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import Point, Spline
 
 _NODES, _INVERSIONS = 20, 10
-_CUTS = 8  # of a piece, for arc length and angle
+_CUTS = 8  # parts of a piece, for arc length and angle
 
 
 class Interpolated:
-    """A line through points; every function takes arc lengths (n,), in units of length."""
+    """A line through points; functions map arc lengths (n,), in units of length, to values (n,)."""
 
     def __init__(self, curve: Spline, unit: float) -> None:
-        from scipy.interpolate import CubicSpline  # loaded when a beam is a spline
+        from scipy.interpolate import CubicSpline  # imported for splines only
 
         points = np.array(curve.points) / unit
         t = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
@@ -44,7 +44,7 @@ class Interpolated:
 
     @property
     def length(self) -> float:
-        """Its arc length."""
+        """Arc length of the line."""
         return float(self._s[-1])
 
     def _speed(self, t: Array) -> Array:
@@ -55,7 +55,7 @@ class Interpolated:
         return np.asarray(across * (self._speed(begin[..., None] + across[..., None] * self._x) @ self._w))
 
     def _variable(self, s: Array) -> tuple[Array, Ints]:
-        """t, and in which cut it is; beyond the ends the line goes on."""
+        """t and its part of a piece; the line continues beyond its ends."""
         s = np.asarray(s, dtype=float)
         cut = np.clip(np.searchsorted(self._s, s, side="right") - 1, 0, len(self._t) - 2)
         begin, rest = self._t[cut], s - self._s[cut]
@@ -90,7 +90,7 @@ class Interpolated:
         return np.asarray((second - rate * v1 / v) / v**2)
 
     def place(self, s: Array) -> Array:
-        """The points."""
+        """Points (2, n)."""
         return np.asarray(np.moveaxis(self._P(self._variable(s)[0]), -1, 0))
 
     def _rates(self, s: Array) -> tuple[Array, Array, Array, Array]:

@@ -1,24 +1,24 @@
-"""Whether an equilibrium is a minimum of the energy.
+"""Stability of an equilibrium: least curvature of the energy.
 
 =======  ==========================================================================================================
 symbol   meaning
 =======  ==========================================================================================================
-q        couples at knots along the beams, and forces and moments on the bodies that move
-η        the turnings of knots and the movements of bodies that q makes
-J        derivative of the equations where every piece is cut by further knots; R, Z the rows in which q stands and
-         the places of η among the unknowns
+q        couples at knots along the beams, and forces and moments on moving bodies
+η        rotations of knots and motions of bodies due to q
+J        derivative of the equations with further knots in every piece; R, Z the rows of q and the positions of η
+         among the unknowns
 Φ        η = Φ q, the flexibility
-w        share of the length that a knot stands for; 1 for a body
+w        length of a knot; 1 for a body
 =======  ==========================================================================================================
 
     J dz = −R q,    Φ = −Z J⁻¹ R,    Φᵀ = Φ                                                                      (1)
 
-With the knots held from turning, and the bodies, every piece is shorter than a column that could buckle between them,
-so the energy is least; released, it has as many directions in which it falls as Φ has negative eigenvalues (E. V.
-Haynsworth, Determination of the inertia of a partitioned Hermitian matrix, Linear Algebra and its Applications 1
-(1968) 73-81).  The least curvature of the energy over Σ w η² is one over the largest eigenvalue of √w Φ √w.
+With all knots held against rotation, and all bodies held, every piece is shorter than a column that buckles in
+between: the energy is minimal. After release the energy decreases in as many directions as Φ has negative eigenvalues
+(E. V. Haynsworth, Determination of the inertia of a partitioned Hermitian matrix, Linear Algebra and its Applications
+1 (1968) 73-81). The least curvature of the energy over Σ w η² is the reciprocal of the largest eigenvalue of √w Φ √w.
 
-Contacts that are closed count as held along their normals, which asks that they press.
+Closed contacts count as held along their normals, which requires compression.
 """
 
 from dataclasses import replace
@@ -31,47 +31,47 @@ from elastica_reference.newton import LostError, linearised
 from elastica_reference.state import State, start_of
 from elastica_reference.structure import Structure
 
-_KNOTS = 8  # of a beam, at least
-_SHARE = 0.4  # of the length at which a piece held from turning at its ends would buckle
-_NOISE = 1e-9  # of the largest eigenvalue
+_KNOTS = 8  # least number per beam
+_SHARE = 0.4  # times the buckling length of a piece held against rotation at both ends
+_NOISE = 1e-9  # times the largest eigenvalue
 
 
 def least_curvature(state: State) -> float:
-    """Least curvature of the energy, without dimension; positive at a minimum.
+    """Least curvature of the energy, dimensionless; positive at a minimum.
 
     Raises:
-        LostError: the equations are singular, or places along a beam are in no order.
+        LostError: the equations are singular, or places along a beam are out of order.
     """
-    structure, spacing = _cut(state)
+    structure, spacing = _with_further_knots(state)
     equations = replace(state.equations, structure=structure)
     z = start_of(equations, state, {**state.places, **state.forces})
-    found, _, J = linearised(equations, z, state.lam, state)
-    free = sum(state.equations.model.moving.values())  # bodies come first among the unknowns, and last of the rows
+    evaluation, _, J = linearised(equations, z, state.lam, state)
+    free = sum(state.equations.model.moving.values())  # bodies come first among the unknowns, and last among the rows
     n = len(z)
-    index = [*range(free), *(place for place, _ in found.turnings.values())]
-    rows = [*range(n - free, n), *(row for _, row in found.turnings.values())]
-    weights = np.concatenate([np.ones(free), [spacing[key] for key in found.turnings]])
+    index = [*range(free), *(place for place, _ in evaluation.turnings.values())]
+    rows = [*range(n - free, n), *(row for _, row in evaluation.turnings.values())]
+    weights = np.concatenate([np.ones(free), [spacing[key] for key in evaluation.turnings]])
     if not weights.min() >= 0.0:
-        raise LostError  # places have come past each other
+        raise LostError  # places have passed each other
     root = np.sqrt(weights)
     forces = np.zeros((n, len(rows)))
     forces[rows, np.arange(len(rows))] = -root
     try:
         flexibility = root[:, None] * np.linalg.solve(J, forces)[index]
         eigenvalues = np.linalg.eigvalsh(0.5 * (flexibility + flexibility.T))
-    except np.linalg.LinAlgError as error:  # of what is all but singular eigenvalues are not found
+    except np.linalg.LinAlgError as error:  # a nearly singular matrix has no computable eigenvalues
         raise LostError from error
     least, largest = float(eigenvalues[0]), float(eigenvalues[-1])
     return 1.0 / least if least < -_NOISE * abs(largest) else 1.0 / largest
 
 
-def _cut(state: State) -> tuple[Structure, dict[tuple[str, float], float]]:
-    """The structure with further knots in every piece, and what length each of them stands for."""
+def _with_further_knots(state: State) -> tuple[Structure, dict[tuple[str, float], float]]:
+    """The structure with further knots in every piece, and the length of every knot."""
     order, spacing = {}, {}
     for beam, strip in state.equations.model.strips.items():
         places = state.equations.places_of(beam, state.z)
         items = list(zip(places, state.structure.order[beam], strict=True))
-        for part in state.found.parts[beam]:
+        for part in state.evaluation.parts[beam]:
             a, b = float(part.a[0]), float(part.b[0])
             compliance = float(np.max(strip.compliance(np.linspace(a, b, 9))))
             largest = max(hypot(*part.force[:, 0]), hypot(*part.end_force[:, 0]))

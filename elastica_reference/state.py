@@ -1,4 +1,4 @@
-"""A solved state, and what it is along the beams."""
+"""Equilibrium states, and their quantities along the beams."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ from elastica_reference.spectral import rule
 from elastica_reference.structure import Structure, Wrap
 from elastica_reference.wrapping import bending
 
-_AT_START = 1e-16  # of a piece
+_AT_START = 1e-16  # times a piece's length
 
 
 class Known(Protocol):
-    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along beams, circles' centres (2,), and unknowns with names."""
+    """A state with (x, y, θ, m, Fx, Fy) (6, n) along beams, circles' centres (2,), and named unknowns."""
 
     def along(self, beam: str, s: Array) -> Array: ...  # noqa: D102
     def centre(self, contact: str) -> Array: ...  # noqa: D102
@@ -46,7 +46,7 @@ class Rest:
         return np.array(record.center) / self.model.unit_length
 
     def unknowns(self) -> Mapping[str, float | Array]:
-        """None: all are zero."""
+        """No unknowns: all are zero."""
         return {}
 
 
@@ -55,26 +55,26 @@ class State:
     """An equilibrium.
 
     Attributes:
-        equations: what it solves.
+        equations: equations of the structure and loads.
         z: unknowns (n,); lam: λ.
-        found: everything at z, one column each.
+        evaluation: all quantities at z, with a single column.
         residual: largest row.
     """
 
     equations: Equations
     z: Array
     lam: float
-    found: Evaluation
+    evaluation: Evaluation
     residual: float
 
     @property
     def structure(self) -> Structure:
-        """Which contacts are closed."""
+        """The closed contacts."""
         return self.equations.structure
 
     @property
     def forces(self) -> dict[str, float]:
-        """P by contact; wraps have none."""
+        """P by contact, except wraps."""
         return {name: float(self.z[index]) for name, index in self.equations.layout.forces.items()}
 
     @property
@@ -84,40 +84,40 @@ class State:
 
     def centre(self, contact: str) -> Array:
         """A circle's centre (2,)."""
-        return self.found.centres[contact][:, 0]
+        return self.evaluation.centres[contact][:, 0]
 
     def unknowns(self) -> Mapping[str, float | Array]:
-        """The bodies' and drives' unknowns and the contacts' forces, by name."""
+        """Unknowns of bodies and drives and forces of contacts, by name."""
         where = self.equations.layout
         bodies: dict[str, float | Array] = {name: self.z[index] for name, index in where.bodies.items()}
         return {**bodies, **{name: float(self.z[index]) for name, index in where.drives.items()}, **self.forces}
 
     def along(self, beam: str, s: Array) -> Array:
-        """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,); at a contact what is beyond it."""
+        """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,); at a contact the value beyond."""
         s = np.asarray(s, dtype=float)
         values = np.empty((6, len(s)))
-        parts = self.found.parts[beam]
+        parts = self.evaluation.parts[beam]
         number = np.clip(np.searchsorted([float(part.a[0]) for part in parts], s, side="right") - 1, 0, None)
         for k in np.unique(number):
             here = number == k
             values[:, here] = _within(parts[k], s[here])
         for wrap in self.structure.wraps(beam):
-            a, b = self.wrapped(wrap)
+            a, b = self.wrap_range(wrap)
             here = (s >= a) & ((s < b) | (wrap.to_end & (s >= b)))
             if here.any():
-                values[:, here] = self._wrapped(wrap, s[here])
+                values[:, here] = self._state_in_wrap(wrap, s[here])
         return values
 
-    def wrapped(self, wrap: Wrap) -> tuple[float, float]:
-        """Arc lengths at which a wrap begins and ends."""
-        zone = self.found.zones[wrap.contact]
+    def wrap_range(self, wrap: Wrap) -> tuple[float, float]:
+        """Arc lengths of the beginning and end of a wrap."""
+        zone = self.evaluation.zones[wrap.contact]
         return float(zone.a[0]), float(zone.b[0])
 
-    def _wrapped(self, wrap: Wrap, s: Array) -> Array:
-        """As :meth:`along`, in a wrap; the formulas are those of :mod:`elastica_reference.wrapping`."""
-        zone, g = self.found.zones[wrap.contact], wrap.sense
+    def _state_in_wrap(self, wrap: Wrap, s: Array) -> Array:
+        """(x, y, θ, m, Fx, Fy) (6, n) within a wrap, by the formulas of :mod:`elastica_reference.wrapping`."""
+        zone, g = self.evaluation.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
-        centre = self.found.centres[wrap.contact][:, 0]
+        centre = self.evaluation.centres[wrap.contact][:, 0]
         arm = zone.place[:, 0] - centre
         rho = float(np.hypot(*arm))
         at = np.concatenate([zone.a, s])
@@ -133,16 +133,16 @@ class State:
         return np.stack([x, y, theta, m, F[0], F[1]])[:, 1:]
 
     def pressures(self, wrap: Wrap, s: Array) -> tuple[Array, float, float]:
-        """Line pressure (n,) at places ``s`` (n,) in a wrap, and the forces at its two ends; positive where they press.
+        """Line pressure (n,) at places ``s`` (n,) in a wrap, and the point forces at both ends.
 
-        An end that is held has no force of its own: what is there is the support's.
+        Compression is positive. The force at a clamped end belongs to the support.
         """
-        zone, g = self.found.zones[wrap.contact], wrap.sense
+        zone, g = self.evaluation.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
-        state = self._wrapped(wrap, np.concatenate([zone.a, s, zone.b]))
+        state = self._state_in_wrap(wrap, np.concatenate([zone.a, s, zone.b]))
         tau = np.stack([np.cos(state[2]), np.sin(state[2])])
         e = g * np.stack([tau[1], -tau[0]])
-        rho = float(np.hypot(*(state[:2, 0] - self.found.centres[wrap.contact][:, 0])))
+        rho = float(np.hypot(*(state[:2, 0] - self.evaluation.centres[wrap.contact][:, 0])))
         N = np.sum(tau * state[4:], axis=0)[1:-1]
         pressure = N / rho - g * bending(strip, g / rho, s)[2]
         begin, end = (zone.before - zone.first)[:, 0] @ e[:, 0], (zone.last - zone.after)[:, 0] @ e[:, -1]
@@ -151,13 +151,13 @@ class State:
 
 @lru_cache(maxsize=8)
 def _through(p: int) -> tuple[Array, Array]:
-    """The ends and Gauss's points of (0, 1), and the weights of interpolation through them."""
+    """The ends and Gauss points of (0, 1), and the weights of barycentric interpolation."""
     points = np.concatenate(([0.0], rule(p).points, [1.0]))
     return points, BarycentricInterpolator(points).wi
 
 
 def _within(part: Part, s: Array) -> Array:
-    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece; beyond its ends what is there, for a piece that grows."""
+    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece, constant beyond its ends."""
     solved, start, end = part.solved, part.start[:, 0], part.end[:, 0]
     a, h = float(part.a[0]), float(part.b[0] - part.a[0])
     gauss = rule(len(solved.theta))
@@ -168,12 +168,12 @@ def _within(part: Part, s: Array) -> Array:
     points, weights = _through(len(solved.theta))
     through = BarycentricInterpolator(points, values.T, wi=weights)
     xi = np.clip((s - a) / h, 0.0, 1.0) if h != 0.0 else np.zeros_like(s)
-    xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
+    xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by the distance from its points
     return np.concatenate([through(xi).T, start[4:, None] - part.spread[:, :1] * (h * xi)])
 
 
 def start_of(equations: Equations, known: Known, guesses: Mapping[Any, float]) -> Array:
-    """Unknowns (n,) of a structure, read off a state with perhaps another.
+    """Initial unknowns (n,) of a structure, interpolated from a state of possibly another structure.
 
     Args:
         equations: of the structure.

@@ -1,4 +1,4 @@
-"""Which contacts are closed, and how: what decides the equations' form."""
+"""Closed contacts and their kind, which determine the form of the equations."""
 
 from dataclasses import dataclass
 
@@ -7,14 +7,14 @@ from cprbm_scene.frozendict import frozendict
 
 @dataclass(frozen=True, slots=True)
 class Meeting:
-    """Two beams touch at one place.
+    """Two beams in contact at a place.
 
     Attributes:
-        contact: its name.
-        beam, at: one beam, and the arc length where it touches if that is one of its ends; None between them.
-        onto: the other, which touches between its ends.
-        side: +1 where ``beam`` lies to the left of ``onto``, else −1.
-        apart: distance of the neutral lines, no dimension.
+        contact: name of the contact.
+        beam, at: first beam, and the arc length of its end in contact; None for a place between the ends.
+        onto: second beam, in contact between its ends.
+        side: +1 if ``beam`` lies to the left of ``onto``, else −1.
+        apart: distance of the neutral lines, dimensionless.
     """
 
     contact: str
@@ -27,7 +27,7 @@ class Meeting:
 
 @dataclass(frozen=True, slots=True)
 class Resting:
-    """A beam touches a circle at one place; ``at`` as in :class:`Meeting`."""
+    """A beam and a circle in contact at a place; ``at`` as in :class:`Meeting`."""
 
     contact: str
     beam: str
@@ -36,9 +36,9 @@ class Resting:
 
 @dataclass(frozen=True, slots=True)
 class Wrap:
-    """A beam lies on a circle along a length, from its clamped start, to its clamped end, or between its ends.
+    """A beam on a circle along a length, from its clamped start, to its clamped end, or between its ends.
 
-    ``sense`` is +1 where the beam runs round the circle counter-clockwise.
+    ``sense`` is +1 if the beam runs around the circle counter-clockwise.
     """
 
     contact: str
@@ -49,7 +49,7 @@ class Wrap:
 
     @property
     def held(self) -> bool:
-        """Whether it begins or ends at a clamp."""
+        """True if the wrap begins or ends at a clamp."""
         return self.from_start or self.to_end
 
 
@@ -59,20 +59,20 @@ Item = float | str
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """The closed contacts by name, and by beam the order of what interrupts it.
+    """The closed contacts by name, and the order of interruptions of every beam.
 
-    ``order`` holds for every beam the arc lengths of knots (numbers) and the names of contacts between its ends.
+    ``order`` lists for every beam the arc lengths of knots (numbers) and the names of contacts between its ends.
     """
 
     touches: frozendict[str, Touch]
     order: frozendict[str, tuple[Item, ...]]
 
     def wraps(self, beam: str) -> tuple[Wrap, ...]:
-        """A beam's wraps."""
+        """Wraps of a beam."""
         return tuple(touch for touch in self.touches.values() if isinstance(touch, Wrap) and touch.beam == beam)
 
     def piece_beyond(self, beam: str, contact: str) -> int:
-        """Number of a beam's piece that begins where a contact touches."""
-        held = {wrap.contact for wrap in self.wraps(beam) if wrap.held}
+        """Number of the beam's piece that begins at a contact."""
+        held_wraps = {wrap.contact for wrap in self.wraps(beam) if wrap.held}
         passed = self.order[beam][: self.order[beam].index(contact) + 1]
-        return sum(item not in held for item in passed)
+        return sum(item not in held_wraps for item in passed)

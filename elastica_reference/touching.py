@@ -1,12 +1,12 @@
-"""Contact at a place: its rows, and what it does to beams and bodies.
+"""Contact at a place: rows, and forces on beams and bodies.
 
 =======  ==================================================================================================
 symbol   meaning
 =======  ==================================================================================================
-r, τ, n  place of a neutral line, its unit tangent and left-hand normal
+r, τ, n  position on a neutral line, its unit tangent and left-hand normal
 P, e     the contact's force, and the unit normal along which it acts on ``beam``
-d        distance of two neutral lines that touch, half of both thicknesses
-o, R, T  a circle's centre and radius; half the beam's thickness, T' how it grows
+d        distance of two neutral lines in contact, half of both thicknesses
+o, R, T  a circle's centre and radius; half the beam's thickness, with derivative T'
 =======  ==================================================================================================
 
 Two beams, the second touched between its ends:
@@ -17,8 +17,8 @@ A circle:
 
     |r − o| = R + T,   and between the beam's ends e·τ = T',   e = (r − o)/|r − o|                             (2)
 
-Internal forces jump, F(s+) = F(s−) − P e; at an end the force acts on what holds it, and at a free end it is the
-force there.
+The internal force jumps by F(s+) = F(s−) − P e. At a joined end the force acts on the body, and at a free end it is
+the internal force there.
 """
 
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cprbm_scene import CircleContact
-from elastica_reference.evaluation import Columns, Evaluation, Held
+from elastica_reference.evaluation import Columns, EndAction, Evaluation
 from elastica_reference.layout import Layout
 from elastica_reference.structure import Meeting, Resting, Structure, Wrap
 
@@ -34,9 +34,9 @@ from elastica_reference.structure import Meeting, Resting, Structure, Wrap
 def touch_points(
     out: Evaluation, structure: Structure, where: Layout, z: Columns, at_ends: Mapping[tuple[str, str], Columns]
 ) -> None:
-    """Add the rows of all contacts at places, and of all beams' ends as far as they are about forces.
+    """Add the rows of all contacts at places, and the force rows of all beams' ends.
 
-    Loads act on some of the ends, by beam and ``start`` or ``end``, (2, K).
+    ``at_ends`` are loads (2, K) on ends, by beam and ``start`` or ``end``.
     """
     pushed = dict(at_ends)
     for name, touch in structure.touches.items():
@@ -62,7 +62,7 @@ def touch_points(
 
 
 def _two_beams(out: Evaluation, structure: Structure, touch: Meeting) -> Columns:
-    """(1); e (2, K)."""
+    """Rows (1); returns e (2, K)."""
     state, other = _state(out, structure, touch), _state_between(out, structure, touch.contact, touch.onto)
     along = np.stack([np.cos(other[2]), np.sin(other[2])])
     normal = touch.side * np.stack([-along[1], along[0]])
@@ -75,7 +75,7 @@ def _two_beams(out: Evaluation, structure: Structure, touch: Meeting) -> Columns
 
 
 def _circle(out: Evaluation, structure: Structure, where: Layout, touch: Resting, z: Columns) -> Columns:
-    """(2); e (2, K)."""
+    """Rows (2); returns e (2, K)."""
     contact, strip = out.model.scene.contacts[touch.contact], out.model.strips[touch.beam]
     assert isinstance(contact, CircleContact)
     state = _state(out, structure, touch)
@@ -95,7 +95,7 @@ def _circle(out: Evaluation, structure: Structure, where: Layout, touch: Resting
 
 
 def _state(out: Evaluation, structure: Structure, touch: Meeting | Resting) -> Columns:
-    """(x, y, θ, m) where a contact's first beam touches."""
+    """(x, y, θ, m) at the place of contact of the first beam."""
     if touch.at is None:
         return _state_between(out, structure, touch.contact, touch.beam)
     parts = out.parts[touch.beam]
@@ -107,19 +107,19 @@ def _state_between(out: Evaluation, structure: Structure, contact: str, beam: st
 
 
 def _jump(out: Evaluation, structure: Structure, contact: str, beam: str, force: Columns) -> None:
-    """The force (2, K) of a contact on a beam between its ends."""
+    """Rows for the jump of the internal force by a contact force (2, K) between a beam's ends."""
     k = structure.piece_beyond(beam, contact)
     out.rows += list(out.parts[beam][k].force - out.parts[beam][k - 1].end_force + force)
 
 
 def _release_ends(out: Evaluation, pushed: dict[tuple[str, str], Columns]) -> None:
-    """Hand what beams do at their ends, and contacts there, on to the bodies; a free end is in equilibrium."""
-    for (beam, which), held in out.ends.items():
+    """Transfer the forces of beams and contacts at ends to the bodies; a free end is in equilibrium."""
+    for (beam, which), action in out.ends.items():
         strip = out.model.strips[beam]
         end = strip.start if which == "start" else strip.end
-        force = held.force + pushed[beam, which] if (beam, which) in pushed else held.force
+        force = action.force + pushed[beam, which] if (beam, which) in pushed else action.force
         if end.point is None:
             out.rows += list(force)
         else:
-            out.act(out.model.scene.body_of(end.point), held.place, force, held.moment)
-            out.ends[beam, which] = Held(held.place, force, held.moment)
+            out.act(out.model.scene.body_of(end.point), action.place, force, action.moment)
+            out.ends[beam, which] = EndAction(action.place, force, action.moment)

@@ -1,4 +1,4 @@
-"""The way through a scene: where it stands, what acts there, and how it goes from one structure to the next."""
+"""State of load stepping through a scene, and steps between structures."""
 
 import math
 from collections.abc import Mapping
@@ -12,31 +12,31 @@ from cprbm_scene.answer import Array
 from elastica_reference.equations import Equations
 from elastica_reference.model import Model
 from elastica_reference.newton import Condition, LostError, solve
-from elastica_reference.restructure import NotCoveredError, structured
+from elastica_reference.restructure import NotCoveredError, structure_of
 from elastica_reference.settings import Settings
 from elastica_reference.stability import least_curvature
 from elastica_reference.state import Known, Rest, State, start_of
 from elastica_reference.structure import Meeting, Structure, Touch
 
-_SLACK = 1e-8  # of λ, by which a change may seem to lie before the state that it changes
-_CHANGE = 1.0  # of an unknown in one step, or its own size
+_SLACK = 1e-8  # times λ: tolerance for a change slightly before its state
+_CHANGE = 1.0  # largest change of an unknown in a step, absolute or relative
 
 
 @dataclass
-class Way:
-    """Where the way stands.
+class Stepping:
+    """State of load stepping.
 
     Attributes:
-        model, settings: of what, and how closely.
-        values: of the loads and drives that earlier stages have stepped, no dimension.
-        stage, stepped, unit: the stage, what it steps, and the unit of that in SI.
-        now, before: the last equilibrium, and the one before it if that had the same structure.
-        lam: λ there.
-        events: contacts that have closed; ``closed_at`` by contact where it did so first, SI.
+        model, settings: mechanism and numerical settings.
+        values: dimensionless values of loads and drives stepped in earlier stages.
+        stage, stepped, unit: the stage, its stepped load or drive, and the SI unit of the latter.
+        now, before: the last equilibrium, and the previous one if of the same structure.
+        lam: λ of the last equilibrium.
+        events: closings of contacts; ``closed_at`` is the first closing value (SI) by contact.
         states: number of equilibria.
-        curvature: least one of the energy at the last of them.
-        sides: as :func:`~elastica_reference.gaps.overlaps` asks, of contacts that touch or open
-            at the last of them.
+        curvature: least curvature of the energy in the last equilibrium.
+        sides: sides for :func:`~elastica_reference.gaps.overlaps`, of contacts closed or opening in the last
+            equilibrium.
     """
 
     model: Model
@@ -66,10 +66,10 @@ class Way:
         return Rest(self.model) if self.now is None else self.now
 
     def begin(self, stage: Stage) -> None:
-        """Begin a stage, in the state that is.
+        """Begin a stage in the present state.
 
         Raises:
-            NotCoveredError: it is no equilibrium of the equations.
+            NotCoveredError: the equations are singular.
         """
         if self.stepped:
             self.values[self.stepped] = self.lam
@@ -102,37 +102,37 @@ class Way:
         condition: Condition | None = None,
         pinned: tuple[str, str] | str | None = None,
     ) -> State:
-        """The equilibrium with some closed contacts.
+        """Equilibrium with given closed contacts.
 
         Args:
-            touches: the contacts; places: about where.
-            near: a state to begin with, perhaps of another structure.
-            lam: λ, or about where with a condition or with something pinned.
-            forces: of contacts that the state does not know.
-            condition: one more, for which λ is free.
-            pinned: a contact's force that shall be zero, or a place that shall stay where it is said; likewise.
+            touches: the contacts; places: their approximate places.
+            near: start state, possibly of another structure.
+            lam: λ, or its initial guess with a condition or a pinned quantity.
+            forces: of contacts unknown in the start state.
+            condition: additional condition, with λ as additional unknown.
+            pinned: a contact whose force is zero, or a place with a fixed value, as additional condition.
 
         Raises:
-            LostError: there is none nearby.
-            NotCoveredError: there are no equations for it.
+            LostError: there is no equilibrium nearby.
+            NotCoveredError: there are no equations for the structure.
         """
-        structure = structured(self.model, touches, places)
+        structure = structure_of(self.model, touches, places)
         equations = Equations(self.model, structure, self.stepped, dict(self.values), self.settings.nodes)
         guesses: dict[Any, float] = {**places, **(forces or {})}
         z = start_of(equations, near, guesses)
         where = equations.layout
         if isinstance(pinned, str):
             z[where.forces[pinned]] = 0.0
-            condition = _held_at(where.forces[pinned], 0.0)
+            condition = _has_value(where.forces[pinned], 0.0)
         elif pinned is not None:
-            condition = _held_at(where.places[pinned], places[pinned])
+            condition = _has_value(where.places[pinned], places[pinned])
         return solve(equations, z, lam, self.settings.iterations, near, condition)
 
     def attempt(self, goal: float) -> State:
-        """The equilibrium at λ = ``goal`` in the structure that is.
+        """Equilibrium at λ = ``goal`` in the present structure.
 
         Raises:
-            LostError: it is too far.
+            LostError: the equilibrium is too far.
         """
         now = self.state
         z: Array = now.z
@@ -144,22 +144,22 @@ class Way:
         return trial
 
     def at(self, which: tuple[str, str] | str, value: float, near: float, goal: float) -> State:
-        """The equilibrium between here and λ = ``goal``, about at λ = ``near``, where a force or a place has a value.
+        """Equilibrium at which a force or place has a given value, between here and λ = ``goal``, near λ = ``near``.
 
         Raises:
             LostError: there is none.
         """
         where = self.state.equations.layout
         index = where.forces[which] if isinstance(which, str) else where.places[which]
-        found = solve(self.state.equations, self.state.z, near, self.settings.iterations, self.state,
-                      _held_at(index, value))  # fmt: skip
-        return self.between(found, goal)
+        state = solve(self.state.equations, self.state.z, near, self.settings.iterations, self.state,
+                      _has_value(index, value))  # fmt: skip
+        return self.between(state, goal)
 
     def between(self, state: State, goal: float) -> State:
-        """A state that lies on the way from here to λ = ``goal``.
+        """The ``state``, provided that its λ lies between here and ``goal``.
 
         Raises:
-            LostError: it does not.
+            LostError: λ lies outside.
         """
         low, high = sorted((self.lam, goal))
         slack = _SLACK * max(abs(low), abs(high))
@@ -168,11 +168,11 @@ class Way:
         return state
 
     def accept(self, state: State) -> None:
-        """Go to a state.
+        """Make ``state`` the last equilibrium.
 
         Raises:
-            LostError: the equations are singular there.
-            NotCoveredError: it is no minimum of the energy.
+            LostError: the equations are singular.
+            NotCoveredError: the state is no minimum of the energy.
         """
         same = self.now is not None and self.now.structure == state.structure
         self.curvature = least_curvature(state)
@@ -184,31 +184,31 @@ class Way:
         self.before = self.now if same and self.now is not None and self.now.lam != state.lam else None
         self.now, self.lam, self.sides = state, state.lam, {}
         for touch in state.structure.touches.values():
-            self.note_side(touch)
+            self.record_side(touch)
         self.states += 1
 
-    def note_side(self, touch: Touch) -> None:
-        """Note on which side a beam lies that touches another, or has just ceased to."""
+    def record_side(self, touch: Touch) -> None:
+        """Record the side of a beam in contact with another, or just released."""
         if isinstance(touch, Meeting):
             self.sides[touch.contact, touch.beam, touch.onto] = touch.side
 
-    def note_closed(self, contact: str, lam: float, goal: float) -> None:
-        """Note that a contact closes at λ, on the way to ``goal``; what touches from the first closes there."""
+    def record_closing(self, contact: str, lam: float, goal: float) -> None:
+        """Record the closing of a contact at λ, on the way to ``goal``; initial contacts close at the present value."""
         value = (lam if (lam - self.lam) * (goal - self.lam) > 0.0 else self.lam) * self.unit
         self.events.append(Event(self.stage, contact, "closed", value))
         self.closed_at.setdefault(contact, value)
 
 
 def touches_of(structure: Structure, without: str) -> dict[str, Touch]:
-    """A structure's contacts but one."""
+    """Contacts of a structure except one."""
     return {name: touch for name, touch in structure.touches.items() if name != without}
 
 
 def places_of(state: State, without: str) -> dict[tuple[str, str], float]:
-    """A state's places of contact but those of one contact."""
+    """Places of contact of a state, without the places of one contact."""
     return {key: value for key, value in state.places.items() if key[0] != without}
 
 
-def _held_at(index: int, value: float) -> Condition:
-    """That an unknown has a value."""
-    return lambda z, found: z[index] - value
+def _has_value(index: int, value: float) -> Condition:
+    """Condition for the value of an unknown."""
+    return lambda z, evaluation: z[index] - value

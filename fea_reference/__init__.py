@@ -1,7 +1,6 @@
-"""The independent reference: planar corotational beam elements with penalty contact, on scikit-fem.
+"""Independent reference solver: planar corotational beam elements with penalty contact, on scikit-fem.
 
-It reads a :class:`cprbm_scene.Scene` and hands back a :class:`cprbm_scene.Answer`; it
-knows nothing of the other solver.
+The solver turns a :class:`cprbm_scene.Scene` into a :class:`cprbm_scene.Answer`, independently of the other solver.
 """
 
 from fea_reference.settings import Settings

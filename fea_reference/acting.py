@@ -1,4 +1,4 @@
-"""Which rows act of those that come and go: the pins of ends that are assembled, and the stops."""
+"""Active constraints: pins of assembled ends, and closed stops."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from cprbm_scene.frozendict import frozendict
 
 @dataclass(frozen=True, slots=True)
 class Acting:
-    """What acts at a time.
+    """Active constraints at a time.
 
     Attributes:
-        ways: from the points of the ends that are assembled to where these were when they were caught (k, 2), and
-            there is no way where they were drawn at their points; None while they are free.
-        stopping: whether stops would act where a limit is reached.
-        limits: angle (rad) at which each of the stops holds that act, by name.
+        ways: vectors (k, 2) from the points of assembled ends to the ends at the start of the assembly, zero for ends
+            already at their points; None while the ends are free.
+        stopping: True if stops can close.
+        limits: angle limit (rad) of every closed stop, by name.
     """
 
     ways: Array | None
@@ -25,9 +25,9 @@ class Acting:
     limits: Mapping[str, float] = field(default_factory=frozendict)
 
     def stopped(self, name: str, limit: float) -> Acting:
-        """The same with a stop that holds at a limit."""
+        """The constraints with a stop closed at a limit."""
         return replace(self, limits=frozendict({**self.limits, name: limit}))
 
     def released(self, name: str) -> Acting:
-        """The same without a stop."""
+        """The constraints with a stop open."""
         return replace(self, limits=frozendict({key: limit for key, limit in self.limits.items() if key != name}))

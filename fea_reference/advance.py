@@ -1,4 +1,4 @@
-"""Moving a state along a tangent direction without bending its elements.
+"""Motion of a state along a tangent direction without parasitic strain of its elements.
 
 ======  =============================================================
 symbol  meaning
@@ -7,10 +7,10 @@ l, α    length and angle of an element's chord
 δ       first-order change, along the step
 ======  =============================================================
 
-Adding a step to the nodes' positions lengthens and turns every chord by its square and its cube, and a short
-element answers with forces of 12 EI/h³ times that.  Turning every chord by δα and lengthening it by δl
-instead, and joining the chords from the beam's start, agrees to first order, so Newton's method stays of
-second order; what is left unbalanced is smooth.
+A step added to the nodes' positions changes every chord by second- and third-order terms, too. A short element turns
+this change into forces of 12 EI/h³ times its size. Instead every chord is turned by δα and lengthened by δl, and the
+chords are joined from the beam's start. This agrees to first order, so that Newton's method stays quadratic, and
+leaves a smooth residual.
 """
 
 import numpy as np
@@ -22,19 +22,19 @@ from fea_reference.state import State
 
 def advance(model: Model, z: State, step: Array) -> State:
     """State ``z`` moved by ``step`` (size,)."""
-    way = step.copy()
+    motion = step.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
         dx, dy, turn, stretch = _chords(dofs, z, step)
-        # What each chord changes by, with all digits however small it is: (1 + stretch) R(turn) less one.
+        # change of every chord without cancellation: (1 + stretch) R(turn) minus the identity
         along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
         changes = np.array([along * dx - across * dy, across * dx + along * dy])
-        way[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return z.moved(way)
+        motion[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return z.moved(motion)
 
 
-def carried(model: Model, before: State, now: State, rate: Array) -> Array:
-    """A ``rate`` (size,) in the state ``before`` as one that turns and stretches the chords of ``now`` by the same."""
+def transported(model: Model, before: State, now: State, rate: Array) -> Array:
+    """Vector ``rate`` (size,) of the state ``before``, transported to ``now``: equal turn and stretch of the chords."""
     same = rate.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
@@ -45,21 +45,21 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
     return same
 
 
-def bend(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
-    """What bends the way from one state to another while a value changes ``by`` so much: c₂ and c₃, (size,) each.
+def path_terms(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
+    """Higher-order terms c₂ and c₃ (size,) of the path between two states, for an increment ``by`` of the parameter.
 
-    Over u from −1 in the state ``before`` to 0 ``now`` it is ``by`` times u times the last rate, + c₂ u² + c₃ u³;
-    ``rates`` are those at both ends, (size,) each, by the value.
+    With u from −1 in the state ``before`` to 0 ``now`` the path is u ``by`` times the last rate + c₂ u² + c₃ u³.
+    ``rates`` are the path tangents (size,) at both ends.
     """
     here = by * rates[1]
-    come = way_to(model, now, before) + here
-    turned = by * carried(model, before, now, rates[0]) - here
-    return 3.0 * come + turned, 2.0 * come + turned
+    first_term = step_between(model, now, before) + here
+    turned = by * transported(model, before, now, rates[0]) - here
+    return 3.0 * first_term + turned, 2.0 * first_term + turned
 
 
-def way_to(model: Model, start: State, end: State) -> Array:
-    """The step (size,) by which ``start`` is moved to ``end``, see :func:`advance`."""
-    way = (end.values - start.values) + (end.rest - start.rest)
+def step_between(model: Model, start: State, end: State) -> Array:
+    """The step (size,) from ``start`` to ``end``, inverse of :func:`advance`."""
+    step = (end.values - start.values) + (end.rest - start.rest)
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
         dx, dy = start.difference(dofs[:, 1:], dofs[:, :-1])
@@ -67,12 +67,12 @@ def way_to(model: Model, start: State, end: State) -> Array:
         ratio = (along + 1j * across) / (dx + 1j * dy)
         turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
         changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-        way[dofs[:, 1:]] = way[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return way
+        step[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return step
 
 
 def _chords(dofs: Ints, z: State, step: Array) -> tuple[Array, Array, Array, Array]:
-    """The chords (n,) between a beam's nodes, ``dofs`` (2, n + 1), along x and y, and their turn and stretch."""
+    """Chord components (n,) along x and y of a beam's nodes ``dofs`` (2, n + 1), and their turn and stretch."""
     dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])
     step_x, step_y = np.diff(step[dofs], axis=1)
     square = dx * dx + dy * dy

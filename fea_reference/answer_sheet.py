@@ -1,7 +1,7 @@
-"""Statics of a state for the answer sheet: internal forces of beams, point forces, contact states, body motions; SI.
+"""Statics of a state for the answer sheet: internal forces, point forces, contact states, body motions; SI.
 
-Contacts act at the Gauss points of their zones; internal forces are those of the elements.  The equilibrium search
-uses nothing from here.
+Contacts act at the Gauss points of their zones; internal forces follow from the elements. The equilibrium search does
+not use this module.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ from fea_reference.march import March
 from fea_reference.model import BeamPart
 from fea_reference.recovery import bending_moment, section_force
 from fea_reference.stops import acting_stops
-from fea_reference.supports import held, support
+from fea_reference.supports import joint_reaction, row_reaction
 from fea_reference.touch import Pair, Touch
 
 BESIDE = 1e-12
@@ -41,7 +41,7 @@ def beam_states(march: March) -> dict[str, BeamState]:
 
 
 def point_forces(scene: Scene, march: March) -> PointForces:
-    """All forces but the loads."""
+    """All forces except the loads."""
     rows = [*_at_joints(march), *_on_bodies(scene, march), *_at_stops(march)]
     rows += [row for touch in march.system.touches for row in _at_contact(march, touch)]
     units = march.model.units
@@ -73,7 +73,7 @@ def _at_joints(march: March) -> Iterator[PointForce]:
     ends |= {int(model.node_dofs[0, beam.nodes.stop - 1]): (beam.name, beam.length) for beam in model.beams}
     for joint in model.joints:
         beam, s = ends[int(joint.dofs[0])]
-        at, body, (force, moment) = z[joint.dofs[:2]], model.bodies[joint.body], support(joint, z)
+        at, body, (force, moment) = z[joint.dofs[:2]], model.bodies[joint.body], joint_reaction(joint, z)
         yield PointForce(joint.point, beam, s, at, force, moment)
         if body.dofs is not None:
             yield PointForce(joint.point, body.name, np.nan, at, -force, -moment)
@@ -83,7 +83,7 @@ def _on_bodies(scene: Scene, march: March) -> Iterator[PointForce]:
     """Forces of slides, pivots, drives and pins on bodies."""
     model, z = march.model, march.system.z
     for part in (*model.guides, *model.drives):
-        body, (force, moment) = model.bodies[part.body], held(part, z)
+        body, (force, moment) = model.bodies[part.body], row_reaction(part, z)
         owner = scene.bodies.get(part.name)
         source = owner.about if isinstance(owner, TurningBody) else part.name
         yield PointForce(source, body.name, np.nan, model.carried(body, part.arm, z), force, moment)

@@ -1,7 +1,7 @@
-"""Before the first stage: ends that are drawn apart are brought to their points.
+"""Assembly before the first stage: beams' ends drawn apart from their points are moved there.
 
-Auxiliary moments grow on the ends while they are free; the ends are caught where they are and go straight to their
-points; the moments go away.  Stops act as soon as the ends have arrived.
+Auxiliary moments grow on the free ends; the ends are then held and moved straight to their points; finally the
+moments are removed. Stops can close once the ends have arrived.
 """
 
 import numpy as np
@@ -19,11 +19,11 @@ _BEYOND = 1e-9  # rad
 
 
 def assemble_ends(scene: Scene, march: March) -> None:
-    """Assemble what there is to assemble.
+    """Assemble all ends drawn apart.
 
     Raises:
-        SceneError: a stop forbids it.
-        StoppedError: it cannot be carried out.
+        SceneError: a stop forbids the assembly.
+        StoppedError: the assembly fails.
     """
     model = march.model
     if not model.apart:
@@ -31,35 +31,35 @@ def assemble_ends(scene: Scene, march: March) -> None:
     moments, way = (model.stepped.index(share) for share in (MOMENTS, WAY))
     try:
         reach(march, Course(moments, 1.0), 1.0)
-        ways = np.array([_way(march, i) for i in range(len(model.apart))])
-        march.act(Acting(ways, stopping=False))
+        ways = np.array([_vector_to_end(march, i) for i in range(len(model.apart))])
+        march.constrain(Acting(ways, stopping=False))
         reach(march, Course(way, 1.0), 1.0)
-        forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene)]
+        forbidden = [mistake for stop in model.stops for mistake in _limit_mistakes(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
-        march.act(Acting(ways, stopping=True))
+        march.constrain(Acting(ways, stopping=True))
         reach(march, Course(moments, 1.0), 0.0)
     except StoppedError as stopped:
         raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped
-    # what closed meanwhile is closed before anything of the scene is loaded or driven
+    # contacts closed during the assembly are closed before any load or drive of the scene
     march.closing = dict.fromkeys(march.closing, 0.0)
 
 
-def _way(march: March, number: int) -> Array:
-    """From its point to where an end is, (2,)."""
+def _vector_to_end(march: March, number: int) -> Array:
+    """Vector (2,) from the point of an end to the end."""
     joint = march.model.apart[number].joint
     body = march.model.bodies[joint.body]
     return np.asarray(march.system.z[joint.dofs[:2]] - march.model.carried(body, joint.arm, march.system.z))
 
 
-def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
-    """That an assembled end is beyond a limit of its stop, if it is."""
-    room, limit = stop.room(march.system.z)
-    if room >= -_BEYOND:
+def _limit_mistakes(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
+    """A mistake if an assembled end is beyond a limit of its stop; else an empty list."""
+    margin, limit = stop.margin(march.system.z)
+    if margin >= -_BEYOND:
         return []
     key = f"contacts.{stop.owner}" if stop.owner else f"stops.{stop.name}.{'most' if limit == stop.most else 'least'}"
-    found = (
+    message = (
         f"{limit:g} rad: a stop that forbids the assembly, by which {stop.end[0]!r} comes to "
         f"stand at {stop.angle(march.system.z):.4g} rad"
     )
-    return [Mistake(key, found, "limits that the assembled beam keeps, or other moments", scene.file)]
+    return [Mistake(key, message, "limits that the assembled beam keeps, or other moments", scene.file)]

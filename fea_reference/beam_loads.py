@@ -1,52 +1,54 @@
-"""Dead loads on beams, consistent with the neutral line: their work, and its derivatives by the unknowns.
+"""Dead loads on beams, consistent with the neutral line: work, and its derivatives by the unknowns.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 ζ_g     places of a load on its beam, element number plus ξ; f_g the force there
-x(ζ)    place on the neutral line, :mod:`fea_reference.hermite`; ψ its tangent angle at a node
-ξ*      where the line's arc length from the element's first node is ξ L
+x(ζ)    point of the neutral line, :mod:`fea_reference.hermite`; ψ its tangent angle at a node
+ξ*      place where the line's arc length from the element's first node is ξ L
 l, α    length and angle of an element's chord; n = (−sin α, cos α), t = (cos α, sin α)
-γ       angle of shear of the place's element, by which its line leans from the sections at both of its ends
-c, c_t  give of the place of a force across an element whose ends are held, and along it
-φ, σ    12 EI/(GA L²) and 1/(1 + φ), which by the slip c of :mod:`fea_reference.element` is 1 − c₁ − c₂
-m       speed of the place's cubic at both nodes, l (1 + (ψ₂ − ψ₁)²/16)
-W       Σ f_g·(x(ζ_g) − x⁰(ζ_g)), and of a force ½ c (f·n)² + ½ c_t (f·t)²
+γ       shear angle of the element, between its line and the sections at both ends
+c, c_t  compliance at a force inside an element with fixed ends, across and along
+φ, σ    12 EI/(GA L²) and 1/(1 + φ); with the slip c of :mod:`fea_reference.element` σ = 1 − c₁ − c₂
+m       speed of the cubic at both nodes, l (1 + (ψ₂ − ψ₁)²/16)
+W       Σ f_g·(x(ζ_g) − x⁰(ζ_g)), and for a point force ½ c (f·n)² + ½ c_t (f·t)²
 ======  =====================================================================================
 
-A force within an element and a distributed load act on the nodes by the cubic shape functions, as if these held what
-they do in between.  In small deflections the nodes are then where they would be (P. Tong, Exact solution of certain
-problems by finite-element method, AIAA Journal 7 (1969) 178-180), with shear too if each element's cubic leans by its
-own γ, and not by the mean that makes a line smooth: under a force γ jumps, and how much of the jump is before the place
-would be the mesh's to tell.  What the shape functions lack is a bubble: under a distributed load its energy is of fifth
-order in each element, and of third with shear, but of third and first under a force, so that this one is added.  It
-moves the place by c (f·n) n + c_t (f·t) t; that two forces in one element have a share in each other's is left out.
-With u + v = L, a cantilever's formulas for either end, and the element's axial compliance c_N,
+Consistent nodal forces: a force within an element, and a distributed load, act on the nodes by the cubic shape
+functions. In small deflections the nodal displacements are then exact (P. Tong, Exact solution of certain problems by
+finite-element method, AIAA Journal 7 (1969) 178-180). With shear this holds if the cubic of every element leans by
+the element's own γ. The mean γ of a smooth line would not do: under a force γ jumps, and the mesh would decide which
+part of the jump lies before the place.
+
+Bubble: the shape functions lack the deflection within an element with fixed ends. Per element its energy is of fifth
+order under a distributed load, and of third with shear; under a point force of third and first order. The bubble of a
+point force is added and moves the place by c (f·n) n + c_t (f·t) t; the coupling of two forces in an element is
+neglected. With u + v = L, the cantilever's formulas at both ends, and the element's axial compliance c_N,
 
     c = (u v/(12 EI L)) [ u v (1 − σ (v − u)²/L²) + φ L² ],     u³v³/(3 EI L³) without shear,     c_t = c_N u v/L.
 
-The speed is that of :mod:`fea_reference.hermite` for an arc, by the chord and not by the axial force: that would be
-worked on by what acts within its element, and be off by a tenth of it.
+The speed m is the speed of an arc over the chord, not the speed from the axial force as in
+:mod:`fea_reference.hermite`. A load would do work on the latter within its element, with an error of a tenth.
 
-A cubic over an arc is slower in the middle, by α²/8 of its speed with the element's turning 2α, so that a force acts at
+Along an arc of angle 2α the cubic is slower in the middle, by α²/8 of its speed, so that a force acts at
 
     ξ* = ξ − (ψ₂ − ψ₁)² ξ (1 − ξ)(1 − 2ξ)/48
 
     ∂(½ c (f·n)² + ½ c_t (f·t)²)/∂α = (c_t − c)(f·n)(f·t),    ∂²/∂α² = (c − c_t)((f·t)² − (f·n)²)
 
-A moment M does the work M (θ − θ⁰) of the section's rotation θ at its place, and not of the line's tangent: that leans
-by the shear, and a moment on it would be a couple of forces as far apart as an element is long, which shear the beam
-the more the shorter that is.  With the angle of shear γ of its element, and θ₁ and θ₂ of the sections at its nodes,
+A moment M does the work M (θ − θ⁰) of the section's rotation θ, not of the tangent. The tangent leans by the shear
+angle; a moment on the tangent would be a couple over the element's length, whose shear grows on finer meshes. With
+the shear angle γ of the element and the sections' rotations θ₁, θ₂ at its nodes,
 
     θ = (1 − ξ)(1 − 3 ξ) θ₁ − ξ (2 − 3 ξ) θ₂ + 6 ξ (1 − ξ)(α − γ),
 
-which is what the element's energy goes by.  The slope of a cubic through both nodes is another angle, by the third
-power of the element's turning and more or less by where in its element the place is: no mesh would tell what is left.
+as in the element's energy. The slope of a cubic through both nodes differs from θ by the third power of the element's
+rotation. The difference depends on the place within the element, and refinement would not reveal the error.
 
     dα = n·d(x₂ − x₁)/l,    d²α = −2 (n·d(x₂ − x₁)) (t·d(x₂ − x₁))/l²
 
-As a force has, it has a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 σ u v/L²)/EI: a
-constant ½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.
+A moment, too, has a compliance within an element with fixed ends, c' = (u v/L)(1 − 3 σ u v/L²)/EI. The energy ½ c' M²
+is constant. Two unit moments in an element, at u ≤ u', rotate each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.
 """
 
 from dataclasses import dataclass
@@ -54,7 +56,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm_scene.answer import Array
-from fea_reference.hermite import Index, NeutralLine, along, by_chord, shape_slopes, shapes, twice_along
+from fea_reference.hermite import (
+    Index,
+    NeutralLine,
+    chord_speed_excess,
+    projected_gradient,
+    projected_hessian,
+    shape_slopes,
+    shapes,
+)
 from fea_reference.leaning import Chain
 from fea_reference.model import BeamLoadPart, BeamMomentPart, Model, OnBeam
 from fea_reference.state import State
@@ -65,13 +75,13 @@ _LINE = 7  # unknowns of an element's line
 
 @dataclass(frozen=True, slots=True)
 class BeamLoad:
-    """A load in one state.
+    """A load in a given state.
 
     Attributes:
-        part, value, force: the load, its value and forces (2, k), of a moment zero.
-        place: where they act (2, k); work: W.
-        chain: from what its elements' lines go by to the unknowns.
-        gradient, hessian: derivatives of W by the unknowns ``dofs`` (M, k), (M, k) and (M, M, k).
+        part, value, force: the load, its value and forces (2, k), zero for a moment.
+        place: points of application (2, k); work: W.
+        chain: chain rule from the unknowns of element lines to all unknowns.
+        gradient, hessian: derivatives (M, k) and (M, M, k) of W by the unknowns ``dofs`` (M, k).
     """
 
     part: OnBeam
@@ -85,72 +95,72 @@ class BeamLoad:
 
     @property
     def dofs(self) -> Index:
-        """Unknowns that its places depend on."""
+        """Unknowns on which the places depend."""
         return self.chain.dofs
 
     @property
     def moment(self) -> float:
-        """About the origin."""
+        """Moment about the origin."""
         own = self.value if isinstance(self.part, BeamMomentPart) else 0.0
         return own + float((self.place[0] * self.force[1] - self.place[1] * self.force[0]).sum())
 
 
 def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
-    """A load of a ``value`` in state ``z``."""
+    """A load of the given ``value`` in state ``z``."""
     if isinstance(part, BeamMomentPart):
         return _beam_moment(model, part, value, z)
     beam = model.beams[part.beam]
     force = value * part.forces
-    placed = _placed(model, part, z)
+    placed = _load_places(model, part, z)
     place = placed.place
-    start = model.loaded.found(model.start, part.name, lambda: _placed(model, part, model.start).place)
-    local, twice = placed.along(force)
+    start = model.loaded.recall(model.start, part.name, lambda: _load_places(model, part, model.start).place)
+    local, twice = placed.projected_gradient(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
-        bubble = _bubble(placed.line, placed.local, _gives(model, part, placed), force)
+        bubble = _bubble(placed.line, placed.local, _compliances(model, part, placed), force)
         local, twice, place = local + bubble.local, twice + bubble.twice, place + bubble.moved
         done += 0.5 * float((bubble.moved * force).sum())
-    chain = model.chain_apart(beam, placed.e, z)
+    chain = model.separate_chain(beam, placed.e, z)
     return BeamLoad(part, value, force, place, done, chain, chain.gradient(local), chain.hessian(twice, local))
 
 
 def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> BeamLoad:
-    """A moment of a ``value`` in state ``z``."""
+    """A moment of the given ``value`` in state ``z``."""
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
     sections = model.line_of_sections(beam, z)
     e, xi = sections.locate(zeta)
-    theta, local, twice = _turning(sections, zeta)
+    theta, local, twice = _section_angle(sections, zeta)
     bow = 6.0 * xi * (1.0 - xi)
     gamma, leaning = model.sheared(beam, e, z)
     theta = theta - bow * gamma
     local[:6] -= bow * leaning.by
     twice[:6, :6] -= bow * leaning.by_twice
-    rest, give = model.loaded.found(model.start, part.name, lambda: _moment_at_rest(model, part))
+    rest, give = model.loaded.recall(model.start, part.name, lambda: _moment_at_rest(model, part))
     chain = model.chain_of_sections(beam, e)
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
-    none, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
-    return BeamLoad(part, value, none, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
+    no_force, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
+    return BeamLoad(part, value, no_force, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
 
 
 def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:
-    """Where the angle begins that a moment of one works on, and by how much that moment turns its own place, (2,)."""
+    """Initial angle of the place and the rotation of the place by its own unit moment, (2,)."""
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
     sections = model.line_of_sections(beam, model.start)
     e, xi = sections.locate(zeta)
     gamma, _ = model.sheared(beam, e, model.start)
-    (theta,) = _turning(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
-    return np.array((theta, _mutual(model, part, part, sections)))
+    (theta,) = _section_angle(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
+    return np.array((theta, _mutual_work(model, part, part, sections)))
 
 
 def shared_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, z: State) -> float:
-    """Work of two moments of one as either turns the other's place within one element; zero where they share none."""
+    """Mutual work of two unit moments within an element; zero for different elements."""
     if part.beam != other.beam:
         return 0.0
-    return _mutual(model, part, other, model.line(model.beams[part.beam], z))
+    return _mutual_work(model, part, other, model.line(model.beams[part.beam], z))
 
 
-def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: NeutralLine) -> float:
+def _mutual_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: NeutralLine) -> float:
     zeta = np.array([part.zeta, other.zeta])
     e, xi = line.locate(zeta)
     if e[0] != e[1]:
@@ -163,8 +173,11 @@ def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: Neu
     return float(line.lengths[e[0]]) * straight * (1.0 - 3.0 * sigma * last * (1.0 - first)) / bending
 
 
-def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
-    """θ + 6 ξ (1 − ξ) γ at places (k,), counted on from the nodes', and its derivatives by what their lines go by."""
+def _section_angle(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
+    """θ + 6 ξ (1 − ξ) γ at places (k,), and its derivatives by the unknowns of the element lines.
+
+    The angle is continuous from the nodes.
+    """
     e, xi = line.locate(zeta)
     first, last = line.angles[e], line.angles[e + 1]
     (cos, sin), _, turn, stretch = _chord(line, e)
@@ -179,9 +192,10 @@ def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Placed:
-    """Where a load acts: elements ``e``, which are ``local`` ones of the ``line``, ξ* and ξ (k,), and ∂ξ* and ∂²ξ* by
-    the nodes' ψ (2, k).
+class _LoadPlaces:
+    """Places of a load: beam elements ``e``, their numbers ``local`` in ``line``, ξ* and ξ, all (k,).
+
+    ``slope`` and ``second`` (k,) are the derivatives of ξ* by the difference of the nodes' ψ.
     """
 
     line: NeutralLine
@@ -197,8 +211,8 @@ class _Placed:
         """x (2, k)."""
         return self.line.at(self.local + self.at)[0]
 
-    def along(self, f: Array) -> tuple[Array, Array]:
-        """Derivatives of f·x(ξ*) for forces (2, k) by what the elements' lines go by: (7, k) and (7, 7, k)."""
+    def projected_gradient(self, f: Array) -> tuple[Array, Array]:
+        """Derivatives (7, k) and (7, 7, k) of f·x(ξ*) for forces (2, k) by the unknowns of the element lines."""
         line, e, H, H1 = self.line, self.local, shapes(self.at), shape_slopes(self.at)
         _, x1, x2 = line.at(e + self.at)
         ahead, bent = (f * x1).sum(axis=0), (f * x2).sum(axis=0)
@@ -207,8 +221,8 @@ class _Placed:
         turned[2, 2] = turned[5, 5] = self.second
         turned[2, 5] = turned[5, 2] = -self.second
         speed, speed_twice = _speed(line, e)
-        local, twice = along(f, H, line, e), twice_along(f, H, line, e)
-        by, by1 = _by_nodes(local, speed), _by_nodes(along(f, H1, line, e), speed)
+        local, twice = projected_gradient(f, H, line, e), projected_hessian(f, H, line, e)
+        by, by1 = _by_nodes(local, speed), _by_nodes(projected_gradient(f, H1, line, e), speed)
         both = twice[_LINE - 1][:, None] * speed[None, :]
         by_twice = twice + both + both.transpose(1, 0, 2) + local[_LINE - 1] * speed_twice
         by_twice[_LINE - 1] = by_twice[:, _LINE - 1] = 0.0
@@ -218,38 +232,38 @@ class _Placed:
 
 
 def _by_nodes(local: Array, speed: Array) -> Array:
-    """Derivatives (7, k) by the nodes alone of what has ``local`` ones, the last of them by the speed."""
+    """Derivatives (7, k) by the nodes alone, from ``local`` (7, k) with the last row by the speed."""
     by = local + local[_LINE - 1] * speed
     by[_LINE - 1] = 0.0
     return np.asarray(by)
 
 
 def _speed(line: NeutralLine, e: Index) -> tuple[Array, Array]:
-    """Derivatives of m − L (1 + (ψ₂ − ψ₁)²/48) by the nodes, (7, k) and (7, 7, k)."""
+    """Derivatives (7, k) and (7, 7, k) of m − L (1 + (ψ₂ − ψ₁)²/48) by the nodes."""
     _, _, turn, stretch = _chord(line, e)
     l = np.abs(line.nodes[e + 1] - line.nodes[e])  # noqa: E741 - the chord's length
     turned, L = line.angles[e + 1] - line.angles[e], line.lengths[e]
     ends = np.zeros((_LINE, 1))
     ends[2], ends[5] = -1.0, 1.0
     both = stretch[:, None] * ends[None, :]
-    _, by_l, by_turned, by_both, by_turned_twice = by_chord(l, L, turned)
+    _, by_l, by_turned, by_both, by_turned_twice = chord_speed_excess(l, L, turned)
     twice = by_l * l * turn[:, None] * turn[None, :] + by_both * l * (both + both.transpose(1, 0, 2))
     return by_l * l * stretch + by_turned * ends, twice + by_turned_twice * ends[:, None] * ends[None, :]
 
 
-def _placed(model: Model, part: BeamLoadPart, z: State) -> _Placed:
-    """A distributed load's places need no ξ*: what one half of an element gains the other loses."""
+def _load_places(model: Model, part: BeamLoadPart, z: State) -> _LoadPlaces:
+    """Places of a load in state ``z``; for a distributed load ξ* = ξ, as both halves of an element compensate."""
     beam = model.beams[part.beam]
     e, xi = model.line(beam, z).locate(part.zeta)
     local = 2 * np.arange(e.size)
-    line = model.apart_at_nodes(beam, e, z)
+    line = model.separate_elements(beam, e, z)
     g = np.zeros_like(xi) if part.distributed else xi * (1.0 + xi * (2.0 * xi - 3.0)) / 48.0
     turned = line.angles[local + 1] - line.angles[local]
-    return _Placed(line, e, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
+    return _LoadPlaces(line, e, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
 
 
-def _gives(model: Model, part: BeamLoadPart, placed: _Placed) -> tuple[Array, Array]:
-    """c and c_t (k,) of the places of forces."""
+def _compliances(model: Model, part: BeamLoadPart, placed: _LoadPlaces) -> tuple[Array, Array]:
+    """c and c_t (k,) at the places of forces."""
     beam, elements, xi = model.beams[part.beam], model.elements, placed.xi
     e = beam.elements.start + placed.e
     L, sigma = elements.length[e], 1.0 - elements.slip[:, e].sum(axis=0)
@@ -261,7 +275,7 @@ def _gives(model: Model, part: BeamLoadPart, placed: _Placed) -> tuple[Array, Ar
 
 @dataclass(frozen=True, slots=True)
 class _Bubble:
-    """What the gives add to the derivatives of W, ``local`` (7, k) and ``twice`` (7, 7, k), and to x (2, k)."""
+    """Contribution of the bubble to the derivatives of W, ``local`` (7, k) and ``twice`` (7, 7, k), and to x (2, k)."""
 
     local: Array
     twice: Array
@@ -278,7 +292,7 @@ def _bubble(line: NeutralLine, e: Index, gives: tuple[Array, Array], f: Array) -
 
 
 def _chord(line: NeutralLine, e: Index) -> tuple[Array, Array, Array, Array]:
-    """Of elements (k,) t and n (2, k), and dα and dl/l by what their lines go by (7, k)."""
+    """t and n (2, k) of elements (k,), and dα and dl/l by the unknowns of the element lines (7, k)."""
     dx, dy = line.points[:, e + 1] - line.points[:, e]
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
     t, n = np.stack([dx, dy]) / l, np.stack([-dy, dx]) / l
@@ -289,22 +303,22 @@ def _chord(line: NeutralLine, e: Index) -> tuple[Array, Array, Array, Array]:
 
 
 def load_forces(model: Model, part: OnBeam, z: State) -> Array:
-    """Generalised forces (size,) of a load of value one, without the bubbles."""
+    """Generalised forces (size,) of a unit load, without the bubbles."""
     beam = model.beams[part.beam]
     if isinstance(part, BeamMomentPart):
-        one = _beam_moment(model, part, 1.0, z)
+        unit_load = _beam_moment(model, part, 1.0, z)
         f = np.zeros(model.size)
-        np.add.at(f, one.dofs, one.gradient)
+        np.add.at(f, unit_load.dofs, unit_load.gradient)
         return f
-    placed = _placed(model, part, z)
-    chain = model.chain_apart(beam, placed.e, z)
+    placed = _load_places(model, part, z)
+    chain = model.separate_chain(beam, placed.e, z)
     f = np.zeros(model.size)
-    np.add.at(f, chain.dofs, chain.gradient(placed.along(part.forces)[0]))
+    np.add.at(f, chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
     return f
 
 
 def force_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
-    """Force of what acts before places ``zeta`` (k,) of the load's ``line`` in their own elements, (2, k)."""
+    """Force (2, k) of the part of the load before places ``zeta`` (k,) of ``line``, within the same element."""
     part, (e, _) = load.part, line.locate(zeta)
     if isinstance(part, BeamMomentPart):
         return np.zeros((2, zeta.size))
@@ -317,7 +331,7 @@ def force_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
 
 
 def moment_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
-    """Moment about places ``zeta`` (k,) of the load's ``line`` of what acts before them in their own elements, (k,)."""
+    """Moment (k,) about places ``zeta`` (k,) of ``line`` by the part of the load before, within the same element."""
     part, (e, _) = load.part, line.locate(zeta)
     if isinstance(part, BeamMomentPart):
         owner, _ = line.locate(np.array([part.zeta]))

@@ -1,9 +1,9 @@
-"""Frictionless contact of a beam with a rigid circle by a penalty along the beam's neutral line.
+"""Frictionless penalty contact of a beam with a rigid circle, integrated along the beam's neutral line.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-x, c    point of the neutral line, centre of the circle: X + R(φ) arm from its body's own
+x, c    point of the neutral line, centre of the circle: X + R(φ) arm from its body's centre
 r, n    distance |x − c| and its direction (x − c)/r;  τ is n turned clockwise
 R, T    radius; half of the beam's thickness at ζ, zero for a line
 g       gap r − R − T
@@ -16,15 +16,17 @@ Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc lengt
 
     δg = n·(δx − δc),     δ²g = n·(δ²x − δ²c) + (τ·(δx − δc))²/r,
 
-and by ζ alone g' = n·x' − T', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < δ,
-as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
+and by ζ alone g' = n·x' − T', g'' = n·x'' + (τ·x')²/r. The integral runs over the exact intervals with g < δ, as in
+:mod:`fea_reference.contact`: the pressure vanishes at their ends.
 
-An even beam that lies on a circle has the circle's curvature κ = 1/(R + T), so it has no shear force, so its tension is
-constant and presses it on with N κ (Landau and Lifshitz, Theory of Elasticity, §19).  Where EI varies, the shear force
-is −κ EI', so that N + κ² EI is constant and the pressure κ (N − EI'').  Without a lead, the beam sinks in by
-that over ε, and beside a clamp, which does not, a layer of width (4 EI/ε)^¼ leaves its pressure to the clamp: an
-error of first order in the layer's width in the contact's force.  With δ = κ (N − EI'')/ε at the clamp there is no such
-layer, and what is left, at the end of the zone, is of second order.
+Resting pressure: a prismatic beam on a circle has the constant curvature κ = 1/(R + T), hence no shear force and a
+constant tension. The pressure is N κ (Landau and Lifshitz, Theory of Elasticity, §19). With varying EI the shear
+force is −κ EI'. Then N + κ² EI is constant and the pressure is κ (N − EI'').
+
+Lead: without a lead the beam penetrates by the pressure over ε. A clamp does not penetrate. Beside a clamp the
+pressure in a layer of width (4 EI/ε)^¼ therefore goes to the clamp. The error of the contact force is of first order
+in the layer's width. With δ = κ (N − EI'')/ε at the clamp this layer vanishes; the remaining error, at the end of the
+zone, is of second order.
 """
 
 from __future__ import annotations
@@ -36,26 +38,27 @@ import numpy as np
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import CircleContact, Scene
 from fea_reference.edge import edge_of
-from fea_reference.hermite import Around, NeutralLine, along, plane, shapes, twice_along
+from fea_reference.hermite import Around, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
 from fea_reference.model import Model, turned
 from fea_reference.state import Complex, State, squared, summed
-from fea_reference.swept import gone_over
-from fea_reference.touch import Circle, Penalty, Touch, gauss, together
-from fea_reference.zones import Gap, Zones, negative, stepped
+from fea_reference.swept import swept_over
+from fea_reference.touch import Circle, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.zones import Gap, Zones, negative, steps_within
 
-_BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
-_SAGITTA = 0.15  # of the square of a way along an arc, by which its chord may leave it
+_BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
+_SAGITTA = 0.15  # times the square of a motion along an arc: largest deviation of its chord
 _AT_END = 1e-6  # elements
-_LAYERS = 32.0  # of the first penalty, in a beam's length
-_RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
-# Layers in a beam's length at the standard penetration: what they leave is below 1e-7, and thinner ones make more of a
-# clamp's place being rounded. Penetration goes with the fourth power of the layer: who asks for less gets thinner ones.
+_LAYERS = 32.0  # layers per beam length, for the first penalty
+_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
+# Layers per beam length at the standard penetration: their error is below 1e-7, while thinner layers amplify the
+# round-off of a clamp's place. Penetration goes with the fourth power of the layer, so that a smaller requested
+# penetration has thinner layers.
 _THINNEST, _STANDARD = 800.0, 1e-4
 
 
 def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
-    """The scene's contacts of a beam with a circle, ``penetration`` as in the settings."""
-    found = []
+    """The scene's contacts of a beam with a circle; ``penetration`` as in the settings."""
+    contacts = []
     thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
     bodies = [body.name for body in model.bodies]
@@ -70,7 +73,7 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
         radius = contact.radius / model.units.length
         h = float(model.elements.length[beam.elements.start])
         layer = max(h, 0.5 * beam.thickness, min(beam.length / _LAYERS, radius))
-        found.append(
+        contacts.append(
             Circle(
                 name,
                 first,
@@ -83,34 +86,36 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
-    """Where the beam overlaps the circle in state ``z``."""
-    return model.leads.found(z, (circle, 0.0), lambda: (_find(_seen(model, circle, z), circle, 0.0), {}))[0]
+    """Zones of overlap of the beam with the circle in state ``z``."""
+    return model.leads.recall(
+        z, (circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
+    )[0]
 
 
-def room(model: Model, circle: Circle, z: State) -> float:
-    """How far the beam can move against the circle before it may touch it: a lower bound."""
-    seen = _seen(model, circle, z)
-    return float(np.abs(seen.away).min()) - circle.radius - circle.edge.farthest - seen.line.longest
+def motion_before_contact(model: Model, circle: Circle, z: State) -> float:
+    """Lower bound of the relative motion before the beam may touch the circle."""
+    relative = _relative_line(model, circle, z)
+    return float(np.abs(relative.away).min()) - circle.radius - circle.edge.farthest - relative.line.longest
 
 
-def _seen(model: Model, circle: Circle, z: State) -> _Seen:
-    return _Seen.of(model.line(model.beams[circle.first], z), centre(model, circle, z), circle)
+def _relative_line(model: Model, circle: Circle, z: State) -> _RelativeLine:
+    return _RelativeLine.of(model.line(model.beams[circle.first], z), centre(model, circle, z), circle)
 
 
 def centre(model: Model, circle: Circle, z: State) -> Array:
-    """Where the circle's centre is, (2,)."""
+    """Current centre (2,) of the circle."""
     return model.carried(model.bodies[circle.body], np.array(circle.arm), z)
 
 
-def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
-    """Whether a beam that goes straight from one state to another sweeps over the circle's centre or cuts its inside.
+def passes_through(model: Model, circle: Circle, before: State, after: State) -> bool:
+    """True if a beam, straight from one state to another, sweeps over the circle's centre or cuts its inside.
 
-    It sweeps over the centre if the loop of its old place, its end's way, its new place backwards and its start's
-    way winds round that.  On the way it may lie in the circle by what the straight way of a turning beam leaves out.
+    The beam sweeps over the centre if the closed loop of old line, end's path, new line and start's path winds around
+    the centre. During the motion the beam may lie in the circle by the deviation of straight paths of a turning beam.
     """
     beam = model.beams[circle.first]
     old, new = (model.line(beam, z).points - centre(model, circle, z)[:, None] for z in (before, after))
@@ -121,20 +126,20 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
         return True
     centres = [np.array([complex(*centre(model, circle, z))]) for z in (before, after)]
     lines = [model.line(beam, z) for z in (before, after)]
-    first, last, over = gone_over((lines[0], centres[0]), (lines[1], centres[1]))
+    first, last, over = swept_over((lines[0], centres[0]), (lines[1], centres[1]))
     if (over & (first.d * last.d < 0.0)).any():
-        return True  # a circle smaller than what chords leave of arcs
-    way = np.hypot(*(new - old)).max()
-    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * way**2
+        return True  # a circle smaller than the distance between chords and arcs
+    longest_path = np.hypot(*(new - old)).max()
+    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * longest_path**2
     return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
 
 
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+    """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
-    seen, c = _seen(model, circle, z), centre(model, circle, z)
-    line = seen.line
-    ahead, _ = model.leads.found(z, (circle, penalty.lead), lambda: (_find(seen, circle, penalty.lead), {}))
+    relative, c = _relative_line(model, circle, z), centre(model, circle, z)
+    line = relative.line
+    ahead, _ = model.leads.recall(z, (circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {}))
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = gauss(quadrature)
@@ -144,13 +149,13 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     e = there.element
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    r, toward, g = _clearance(seen, circle, there, zeta)
-    x, n = plane(line.nodes[e] + there.way), plane(toward)
+    r, toward, g = _clearance(relative, circle, there, zeta)
+    x, n = as_plane(line.nodes[e] + there.way), as_plane(toward)
     tau = np.array([n[1], -n[0]])
 
     H = shapes(zeta - e)
-    g_q, p = along(n, H, line, e), along(tau, H, line, e)
-    own = twice_along(n, H, line, e)
+    g_q, p = projected_gradient(n, H, line, e), projected_gradient(tau, H, line, e)
+    own = projected_hessian(n, H, line, e)
     if body.dofs is not None:
         arm = turned(np.array(circle.arm), z[body.dofs[2]])
         across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
@@ -163,12 +168,12 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
     g = g - penalty.lead
     weight = penalty.stiffness * ds
-    alike = together(quadrature, e)
+    points_per_place = count_points_per_place(quadrature, e)
     return Touch(
         pair=circle,
         zones=zones,
-        chain=model.chain(((beam, e[::alike]),), z, body.dofs),
-        alike=alike,
+        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
+        points_per_place=points_per_place,
         stiffness=weight,
         gap=g,
         gap_by=g_q,
@@ -182,10 +187,10 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
 
 def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
-    """κ (N − EI'') where a zone meets an end of the beam, else in the middle; zero where the beam is compressed.
+    """κ (N − EI'') at the beam's end in contact, else in the middle of the zone; zero in compression.
 
-    Zero too where what meets the end is less than an element: beside an end that touches and leaves the circle at once.
-    N + κ² EI, which is constant, is the median along the zone, which its end cannot spoil.
+    Also zero if the contact at the end is shorter than an element: the end leaves the circle at once. The constant N
+    + κ² EI is the median along the zone, insensitive to the zone's end.
     """
     if not touch.closed:
         return 0.0
@@ -195,16 +200,16 @@ def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> fl
     middle = intervals.mean(axis=1)
     zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
     if intervals[0, 0] <= _AT_END:
-        place, mine = 0.0, zone == 0
+        place, selected = 0.0, zone == 0
     elif intervals[-1, 1] >= line.n - _AT_END:
-        place, mine = float(line.n), zone == zone[-1]
+        place, selected = float(line.n), zone == zone[-1]
     else:
-        place, mine = float(np.median(middle)), zone >= 0
-    if place in (0.0, line.n) and intervals[mine].max() - intervals[mine].min() < 1.0:
+        place, selected = float(np.median(middle)), zone >= 0
+    if place in (0.0, line.n) and intervals[selected].max() - intervals[selected].min() < 1.0:
         return 0.0
-    axial = z[model.element_dofs[6, line.locate(middle[mine])[0] + beam.elements.start]]
-    kappa = 1.0 / (circle.radius + circle.edge.at(middle[mine]))
-    constant = float(np.median(axial + kappa**2 * beam.bending(middle[mine] / line.n)))
+    axial = z[model.element_dofs[6, line.locate(middle[selected])[0] + beam.elements.start]]
+    kappa = 1.0 / (circle.radius + circle.edge.at(middle[selected]))
+    constant = float(np.median(axial + kappa**2 * beam.bending(middle[selected] / line.n)))
     at = np.array([place / line.n])
     stiffness, second = float(beam.bending(at)[0]), float(beam.bending_second(at)[0])
     kappa_there = 1.0 / float(circle.radius + circle.edge.at(at * line.n)[0])
@@ -212,10 +217,10 @@ def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> fl
 
 
 @dataclass(frozen=True)
-class _Seen:
-    """A neutral ``line`` from the centre of a circle: its nodes by ``away`` x − c (n+1,), and ``over`` (n+1,) there.
+class _RelativeLine:
+    """A neutral ``line`` relative to a circle's centre: vectors ``away`` x − c (n+1,) of its nodes.
 
-    That is r² − (R + T)² of the least T, with all digits.
+    ``over`` (n+1,) is r² − (R + T)² there, for the least T, without cancellation.
     """
 
     line: NeutralLine
@@ -223,19 +228,19 @@ class _Seen:
     over: Array
 
     @classmethod
-    def of(cls, line: NeutralLine, c: Array, circle: Circle) -> _Seen:
-        """Of a circle about ``c`` (2,)."""
+    def of(cls, line: NeutralLine, c: Array, circle: Circle) -> _RelativeLine:
+        """Relative to a circle with centre ``c`` (2,)."""
         away, error = summed(line.nodes, np.full(line.nodes.shape, -complex(*c), dtype=np.complex128))
         rest = error + line.rests
         (x, lost_x), (y, lost_y) = squared(away.real), squared(away.imag)
         total, lost_in_sum = summed(x, y)
         own, lost_of_own = squared(np.array([circle.radius + circle.edge.nearest]))
         over, lost_in_difference = summed(total, -own)
-        lost = lost_x + lost_y + 2.0 * (away.conj() * rest).real
-        return cls(line, away, over + (lost_in_difference + lost_in_sum - lost_of_own + lost))
+        round_off = lost_x + lost_y + 2.0 * (away.conj() * rest).real
+        return cls(line, away, over + (lost_in_difference + lost_in_sum - lost_of_own + round_off))
 
     def near(self, circle: Circle, lead: float) -> Ints:
-        """Elements (k,) in which the gap may be less than a ``lead``, and those about the node that is nearest."""
+        """Elements (k,) with a possible gap below ``lead``, and the elements at the nearest node."""
         r = np.abs(self.away)
         least = np.minimum(r[:-1], r[1:])
         reach = circle.radius + circle.edge.farthest + max(lead, 0.0) + self.line.longest
@@ -245,34 +250,34 @@ class _Seen:
         return np.flatnonzero(within)
 
 
-def _clearance(seen: _Seen, circle: Circle, there: Around, zeta: Array) -> tuple[Array, Complex, Array]:
-    """r (k,), n (k,) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T) of the least T.
+def _clearance(relative: _RelativeLine, circle: Circle, there: Around, zeta: Array) -> tuple[Array, Complex, Array]:
+    """r (k,), n (k,) and g (k,) at places ``zeta`` (k,); g is (r² − (R + T)²)/(r + R + T) for the least T.
 
-    At an element's first node the numerator has all its digits; from there on it changes by no more than the
-    element is long, and so does its round-off.
+    The numerator is exact at an element's first node and changes by at most the element's length, with a round-off to
+    match.
     """
-    q, d = seen.away[there.element], there.way
+    q, d = relative.away[there.element], there.way
     away = q + d
     r = np.abs(away)
-    more = ((2.0 * q + d) * d.conj()).real
-    g = (seen.over[there.element] + more) / (r + (circle.radius + circle.edge.nearest))
+    change = ((2.0 * q + d) * d.conj()).real
+    g = (relative.over[there.element] + change) / (r + (circle.radius + circle.edge.nearest))
     if circle.edge.varies:
         g -= circle.edge.at(zeta) - circle.edge.nearest
     return r, away / r, g
 
 
-def _find(seen: _Seen, circle: Circle, lead: float) -> Zones:
-    """All intervals on which the gap is less than ``lead``; those of a thick beam end at its knots too."""
-    line = seen.line
+def _zones_below(relative: _RelativeLine, circle: Circle, lead: float) -> Zones:
+    """Intervals with a gap below ``lead``, divided at the knots of a thick beam."""
+    line = relative.line
 
-    def at(zeta: Array, none: Array) -> Gap:
+    def at(zeta: Array, zeta_m: Array) -> Gap:
         there = line.around(zeta)
-        r, n, g = _clearance(seen, circle, there, zeta)
+        r, n, g = _clearance(relative, circle, there, zeta)
         ahead = n.conj() * there.ahead
         slope = ahead.real - circle.edge.slope(zeta) if circle.edge.varies else ahead.real
         curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
-        return Gap(g - lead, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
+        return Gap(g - lead, slope, curvature, zeta_m, np.ones(zeta.shape, dtype=bool))
 
-    zeta, neighbours = stepped(seen.near(circle, lead), circle.edge.inner)
+    zeta, neighbours = steps_within(relative.near(circle, lead), circle.edge.inner)
     floor = float(np.finfo(float).eps) * line.longest
     return negative(at, zeta, at(zeta, np.zeros_like(zeta)), neighbours, circle.edge.inner, floor=floor)

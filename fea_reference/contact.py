@@ -1,4 +1,4 @@
-"""Frictionless contact of two beams, or of one and itself, by a penalty along the first one's neutral line.
+"""Frictionless penalty contact of two beams, or self-contact, integrated along the first beam's neutral line.
 
 ======  =====================================================================================
 symbol  meaning
@@ -7,37 +7,36 @@ symbol  meaning
 δ       lead: the gap at which the pressure begins
 p       line pressure ε⟨δ − g⟩
 N, EI   axial force and bending stiffness of either beam
-κ       curvature of the first where it lies on the second, positive where that is convex
+κ       curvature of the first beam on the second, positive where the second is convex
 r, p_τ  x − x_m, and τ·δr
 k       n·δx_m'
 J, a    |x_m'| and n·x_m'';  Z = J² − d a
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc length.  At the closest point
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc length. At the closest point
 
     δg = side n·δr,     δ²g = side { n·δ²r − [ a p_τ² + d k² + 2 J p_τ k ] / Z }
 
-(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over
-the exact intervals on which g < δ, so the pressure vanishes at their moving ends, which therefore add nothing
-to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
-because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
-lies over the inside of the other is the first, what is missing all the same is measured, and where that is more than
-nothing the beams change places.  Where ends of both lie so, each zone is left to the beam whose end it has
-(:mod:`fea_reference.carrying`).
+(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane). The integral runs over the exact
+intervals with g < δ. The pressure vanishes at their moving ends, so that the ends add nothing to either derivative,
+and the integrand is smooth in between. The pressure does not vanish where the second beam ends. There the term ½ ε (δ
+− g)²/|x'·τ| along τ is missing, x' by arc length. Therefore a beam with an end over the inside of the other becomes
+the first; the missing force is measured all the same, and a significant one exchanges the beams. If both beams have
+such ends, every zone is integrated along the beam of its end (:mod:`fea_reference.carrying`).
 
-Where a thickness varies, g is the least of |x − x_m| − T − T_m over x_m, T and T_m being half of the thickness at
-either place (:mod:`fea_reference.facing`): a zone's middle is where that is least over x as well, n·x' = T' and, away
-from corners, −n·x_m' = T_m'.  n leans from the second beam's normal and τ with it, J is τ·x_m', and all the rest stays
-as it is; at a corner that juts out ζ_m is fixed, and δ²g = side { n·δ²r + p_τ²/d }.  At one that goes in, n jumps from
-one side to the other; as in :mod:`fea_reference.face` the place at which it does moves, and adds −ε g (Δδg)²/Δg' to the
-second derivatives, of the first order in the jump of T_m' and in what the beams sink in there.  That is left out.
+With varying half thicknesses T and T_m, g is the minimum of |x − x_m| − T − T_m over x_m
+(:mod:`fea_reference.facing`). At the middle of a zone g is minimal over x, too: n·x' = T' and, away from corners,
+−n·x_m' = T_m'. n and τ lean from the second beam's normal, and J is τ·x_m'; the other formulas stay. At a convex
+corner ζ_m is fixed and δ²g = side { n·δ²r + p_τ²/d }. At a concave corner n jumps. As in :mod:`fea_reference.face`
+the moving place then adds −ε g (Δδg)²/Δg' to the second derivatives; this term, of first order in the jump of T_m'
+and in the penetration, is neglected.
 
-Beams that lie on each other are parallel, and each is in balance across.  Per length of the first that is
-p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', but for the thickness over the radius in what belongs to κ''.  Hence
+Resting pressure: beams in contact along a length are parallel, and both satisfy the transverse equilibrium. Per
+length of the first, p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', up to the ratio of thickness to radius in κ''. Hence
 
     p = κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂),
 
-and δ = p/ε lets it act where the gap is zero; see :mod:`fea_reference.circle` for what it would do otherwise.
+and with δ = p/ε the pressure acts at zero gap; :mod:`fea_reference.circle` describes the error without this lead.
 """
 
 from __future__ import annotations
@@ -51,50 +50,58 @@ from cprbm_scene.answer import Array, Ints
 from cprbm_scene.clearance import JOINED, overlap_at_rest
 from cprbm_scene.curve_records import MEETING
 from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
-from fea_reference.carrying import cut_off, joined, shared_out
+from fea_reference.carrying import cut_ends, merge_zones, split_zones
 from fea_reference.edge import edge_of
 from fea_reference.facing import Borders, Tapers, borders, lean
-from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
-from fea_reference.itself import seen_itself, unseen
+from fea_reference.hermite import (
+    NeutralLine,
+    as_plane,
+    line_difference,
+    projected_gradient,
+    projected_hessian,
+    shape_slopes,
+    shapes,
+)
+from fea_reference.itself import survey_self, without_known_sides
 from fea_reference.model import BeamPart, Model
 from fea_reference.neighbours import nearest
 from fea_reference.state import State
 from fea_reference.staying import frame_of
-from fea_reference.touch import Pair, Penalty, Touch, gauss, together
+from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, gauss
 from fea_reference.zones import (
     Survey,
     Zones,
-    end_apart,
-    ends_over,
+    end_distance,
     gap,
-    nodes_apart,
-    none,
+    has_end_over,
+    no_zones,
+    node_distance,
     one_side,
-    out_of_reach,
     overlap,
-    seen,
+    search_distance,
     side_of,
+    survey_pair,
 )
 
 _AT_END = 1e-6  # elements
-_BESIDE = 2.0  # mean thicknesses: held ends no further apart stand beside each other
-_SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
-_LYING = 1.0  # elements: what is shorter at an end does not lie on the other beam
+_BESIDE = 2.0  # mean thicknesses: largest distance of neighbouring held ends
+_SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of beams in contact as lines
+_LYING = 1.0  # elements: least length of a zone at an end with a resting pressure
 _LINE = 7  # unknowns of an element's line
-_WEIGHTLESS = 1e-6  # of what all zones press with
-_LAYERS = 32.0  # the widest in a beam's length
+_WEIGHTLESS = 1e-6  # least share of the force of all zones
+_LAYERS = 32.0  # layers per beam length, for the widest layer
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The scene's contacts of beams, their sides seen in the undeformed state."""
-    found = []
+    """The scene's contacts of two beams, with their sides in the undeformed state."""
+    contacts = []
     number = {beam.name: i for i, beam in enumerate(model.beams)}
     for name, contact in scene.contacts.items():
         if not isinstance(contact, BeamContact):
             continue
         i, j = (number[beam] for beam in contact.between)
-        lines = [model.line(model.beams[one], model.start) for one in (i, j)]
-        turned = ends_over(lines[1], lines[0]) and not ends_over(lines[0], lines[1])
+        lines = [model.line(model.beams[index], model.start) for index in (i, j)]
+        turned = has_end_over(lines[1], lines[0]) and not has_end_over(lines[0], lines[1])
         if turned:
             i, j = j, i
         first, second = model.beams[i], model.beams[j]
@@ -103,67 +110,72 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         lines = [model.line(beam, model.start) for beam in (first, second)]
         side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
-        ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
+        ends, ends_m = _contact_ends(model, scene, first, second), _contact_ends(model, scene, second, first)
         thick = 0.5 * contact.thick * sum(beam.record.thickest for beam in (first, second)) / model.units.length
-        free, free_m = (_free(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0])))
+        free, free_m = (
+            _contact_range(*order, JOINED * thick) for order in ((lines[0], lines[1]), (lines[1], lines[0]))
+        )
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
         strengths = (loosest, stiffness, stiffest)
         pair = Pair(name, i, j, turned, side, side_m, distance, scale, measure, *strengths, ends, ends_m, tapers=tapers)
-        found.append(replace(pair, free=free, free_m=free_m))
-    return tuple(found)
+        contacts.append(replace(pair, free=free, free_m=free_m))
+    return tuple(contacts)
 
 
-def looked_at(model: Model, pair: Pair, z: State) -> Pair:
-    """Two beams that are apart in state ``z``, in the order and on the sides in which they lie there.
+def with_sides(model: Model, pair: Pair, z: State) -> Pair:
+    """The pair with order and sides of the beams as they lie apart in state ``z``.
 
-    What is beyond the other's end at rest has no side, and an end of the second may come to be what is nearest to the
-    first: on which side the beams touch is told by where they were last.
+    A beam beyond the other's end has no side at rest, and an end of the second may approach the first. The side comes
+    from the last state with the beams opposite to each other.
     """
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    away = end_apart(second, first)
-    if away < end_apart(first, second) and away <= nodes_apart(first, second):
-        pair, first, second = pair.about(), second, first
+    away = end_distance(second, first)
+    if away < end_distance(first, second) and away <= node_distance(first, second):
+        pair, first, second = pair.exchanged(), second, first
     side, side_m = side_of(first, second, pair.side), side_of(second, first, pair.side_m)
     return pair if (side, side_m) == (pair.side, pair.side_m) else replace(pair, side=side, side_m=side_m)
 
 
-def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
-    """Ends of a beam that no body holds beside an end of another: 0 for its start, 1 for its end."""
-    mine, theirs = (
+def _contact_ends(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
+    """Ends of ``beam`` (0 start, 1 end), except neighbours of an end of ``other`` on the same body."""
+    own_ends, other_ends = (
         [
             (_holder(scene, end), place)
             for end, place in zip(
-                (scene.beams[each.name].start, scene.beams[each.name].end),
-                model.line(each, model.start).nodes[[0, -1]],
+                (scene.beams[part.name].start, scene.beams[part.name].end),
+                model.line(part, model.start).nodes[[0, -1]],
                 strict=True,
             )
         ]
-        for each in (beam, other)
+        for part in (beam, other)
     )
     near = _BESIDE * 0.5 * (beam.thickness + other.thickness)
     return tuple(
         which
-        for which, (holder, place) in enumerate(mine)
-        if not any(holder is not None and holder == its and abs(place - there) < near for its, there in theirs)
+        for which, (holder, place) in enumerate(own_ends)
+        if not any(
+            holder is not None and holder == other_holder and abs(place - there) < near
+            for other_holder, there in other_ends
+        )
     )
 
 
-def _free(line: NeutralLine, other: NeutralLine, joined: float) -> tuple[float, float]:
-    """First and last place ζ of a beam, at least a length ``joined`` from an end that it shares with another beam."""
+def _contact_range(line: NeutralLine, other: NeutralLine, joined: float) -> tuple[float, float]:
+    """First and last place ζ with contact, at least ``joined`` from an end shared with the other beam."""
     shared = np.abs(line.nodes[[0, -1], None] - other.nodes[[0, -1]]).min(axis=1) <= MEETING
     first, last = np.where(shared, min(joined / float(line.lengths.min()), line.n), 0.0)
     return float(first), max(float(first), float(line.n - last))
 
 
 def _holder(scene: Scene, end: BeamEnd) -> str | None:
-    """What an end moves with, none of all that stay; None of a free end."""
+    """Body that an end moves with, the same for all fixed bodies; None for a free end."""
     return None if isinstance(end, FreeEnd) else frame_of(scene, scene.body_of(end.point))
 
 
 def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> Tapers | None:
-    """How the thickness of either varies, if any does and it matters."""
+    """Thickness variation of both beams; None without variation, or for contact as lines."""
     if not thick or not (first.record.tapered or second.record.tapered):
         return None
     edges = [
@@ -173,9 +185,9 @@ def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> 
     return Tapers(edges[0], edges[1])
 
 
-def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The scene's contacts of beams with themselves."""
-    found = []
+def self_contacts(scene: Scene, model: Model) -> tuple[Pair, ...]:
+    """The scene's self-contacts."""
+    contacts = []
     for name, contact in scene.contacts.items():
         if not isinstance(contact, SelfContact):
             continue
@@ -184,111 +196,113 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
         least = beam.record.thinnest / model.units.length
         T, scale, measure = (beam.thickness, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         later = not (_grounded(scene, contact.beam, "end") and not _grounded(scene, contact.beam, "start"))
-        roles = unseen(later=later, ended=contact.thick).renewed(model.line(beam, model.start))
+        roles = without_known_sides(later=later, ended=contact.thick).renewed(model.line(beam, model.start))
         penalties = _penalties(model, beam, beam.thickness)
         tapers = _tapers(model, beam, beam, thick=contact.thick)
-        found.append(
+        contacts.append(
             Pair(name, number, number, later, 0.0, 0.0, T, scale, measure, *penalties, roles=roles, tapers=tapers)
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
 def _grounded(scene: Scene, beam: str, which: Literal["start", "end"]) -> bool:
-    """Whether an end is held by what does not move, and cannot come to lie on the beam's side."""
+    """True if the end is on a fixed body and cannot come to lie on the beam's side."""
     end = getattr(scene.beams[beam], which)
     return not isinstance(end, FreeEnd) and not frame_of(scene, scene.body_of(end.point))
 
 
 def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, float, float]:
-    """EI over the fourth power of the widest layer, of the first, and of the thinnest."""
+    """EI over the fourth power of the widest, the first and the thinnest layer."""
     h = float(model.elements.length[beam.elements.start])
     first = max(h, 0.5 * thickness)
     return beam.softest / max(first, beam.length / _LAYERS) ** 4, beam.softest / first**4, beam.softest / h**4
 
 
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
-    """Where the beams of a pair overlap in state ``z``."""
+    """Zones of overlap of a pair in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return overlap(first, second, pair.distance, _seen(model, pair, z, pair.distance), 0.0, _rays(pair, second))
+    return overlap(first, second, pair.distance, _survey(model, pair, z, pair.distance), 0.0, _rays(pair, second))
 
 
 def least_at_ends(model: Model, pair: Pair, z: State) -> float:
-    """The least gap of the ends of the second beam that may come to lie on the first; infinite where none is near.
+    """Least gap of the second beam's ends that may touch the first; infinite without such an end nearby.
 
-    The gap along the first is normal to the second.  An end meets the first's side along the normal of that, and where
-    the beams are not parallel that is the less.
+    Contact along the first is measured normal to the second. An end of the second touches the first's side along the
+    first's normal; between beams at an angle this gap is smaller.
     """
     if not pair.ends_m:
         return np.inf
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    about, zeta = pair.about(), second.n * np.array(pair.ends_m, dtype=float)
+    about, zeta = pair.exchanged(), second.n * np.array(pair.ends_m, dtype=float)
     near = nearest(second.nodes[zeta.astype(int)], first.nodes)[1].astype(float)
     there = gap(second, first, one_side(about.side), pair.distance, about.tapers, zeta, near)
     inside = there.found & (there.zeta_m > _AT_END) & (there.zeta_m < first.n - _AT_END)
-    # deeper is the other side, which it has come to round an end
+    # a deeper end came around an end of the first and lies on the other side
     return float(there.g[inside & (there.g > -0.5 * pair.scale)].min(initial=np.inf))
 
 
-def room(model: Model, pair: Pair, z: State) -> float:
-    """How far two beams can move against each other before a place of one is seen from the other: a lower bound."""
+def motion_before_facing(model: Model, pair: Pair, z: State) -> float:
+    """Lower bound of the relative motion before any place of a beam faces the other."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return nodes_apart(first, second) - out_of_reach(first, second, pair.distance)
+    return node_distance(first, second) - search_distance(first, second, pair.distance)
 
 
-def ends_apart(model: Model, pair: Pair, z: State) -> float:
-    """How far places of the first beam are from touching the circles about the ends of the second: a lower bound."""
+def end_circle_distance(model: Model, pair: Pair, z: State) -> float:
+    """Lower bound of the distance between the first beam and the circles about the second's ends."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return float(nearest(second.nodes[[0, -1]], first.nodes)[0].min()) - first.longest - pair.distance
 
 
-def _seen(model: Model, pair: Pair, z: State, T: float) -> Survey:
+def _survey(model: Model, pair: Pair, z: State, T: float) -> Survey:
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
 
     def look() -> Survey:
         if pair.roles is None:
-            return seen(first, second, pair.side, T, pair.tapers, pair.free)
-        return seen_itself(first, pair.roles, T, pair.tapers)
+            return survey_pair(first, second, pair.side, T, pair.tapers, pair.free)
+        return survey_self(first, pair.roles, T, pair.tapers)
 
-    return model.surveys.found(z, (pair, T), look)
+    return model.surveys.recall(z, (pair, T), look)
 
 
 def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
-    """At which of the second beam's places the gap's curvature jumps; of a beam and itself by either side."""
+    """Places of the second beam with a jump of the gap's curvature; for self-contact of both sides."""
     sides = (pair.side,) if pair.roles is None else (1.0,) if pair.tapers is None else (1.0, -1.0)
     return [borders(second, pair.edge_m, side) for side in sides]
 
 
-def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
+def touch(
+    model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held_depth: float | None = None
+) -> Touch:
+    """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
-    A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method
-    is still far from equilibrium, a contact that was closed before neither vanishes nor hits like a wall.
+    A contact held at ``held_depth`` acts, in tension too, where the gap exceeds its minimum by no more than this depth.
+    Far from equilibrium, a contact that was closed then neither vanishes nor becomes a rigid wall in Newton's method.
     """
     distance = pair.distance + penalty.lead
-    least = _seen(model, pair, z, distance).least
-    level = 0.0 if held is None else least + held
-    zones, zones_m = _overlap(model, pair, z, distance, level), none(np.inf)
+    least = _survey(model, pair, z, distance).least
+    level = 0.0 if held_depth is None else least + held_depth
+    zones, zones_m = _overlap(model, pair, z, distance, level), no_zones(np.inf)
     if pair.carried:
-        along_second = _overlap(model, pair.about(), z, distance, level)
-        zones, zones_m = shared_out(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
-    here = _along(model, pair, distance, quadrature, z, zones)
-    missing, lacks = _missing(model, pair, penalty, z, zones, here)
+        along_second = _overlap(model, pair.exchanged(), z, distance, level)
+        zones, zones_m = split_zones(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
+    here = _gauss_points(model, pair, distance, quadrature, z, zones)
+    missing, missing_share = _missing_force(model, pair, penalty, z, zones, here)
     if zones_m.intervals.size:
-        about = pair.about()
-        there = _along(model, about, distance, quadrature, z, zones_m)
-        more, most = _missing(model, about, penalty, z, zones_m, there)
-        missing, lacks = missing + more, max(lacks, most)
-        least = min(least, _seen(model, about, z, distance).least)
-        zones, order = joined(zones, zones_m)
+        about = pair.exchanged()
+        there = _gauss_points(model, about, distance, quadrature, z, zones_m)
+        further_missing, further_share = _missing_force(model, about, penalty, z, zones_m, there)
+        missing, missing_share = missing + further_missing, max(missing_share, further_share)
+        least = min(least, _survey(model, about, z, distance).least)
+        zones, order = merge_zones(zones, zones_m)
         here = here.with_other(there, (order[:, None] * quadrature + np.arange(quadrature)).ravel())
 
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
-    alike = together(quadrature, here.e, here.e_m)
+    points_per_place = count_points_per_place(quadrature, here.e, here.e_m)
     return Touch(
         pair=pair,
         zones=replace(zones, least=least + penalty.lead),
-        chain=model.chain(((beam, here.e[::alike]), (beam_m, here.e_m[::alike])), z),
-        alike=alike,
+        chain=model.chain(((beam, here.e[::points_per_place]), (beam_m, here.e_m[::points_per_place])), z),
+        points_per_place=points_per_place,
         stiffness=penalty.stiffness * here.ds,
         gap=here.g,
         gap_by=here.by,
@@ -299,24 +313,24 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
         x_m=here.x_m,
         normal=here.normal,
         missing=missing,
-        lacks=lacks,
+        missing_share=missing_share,
     )
 
 
 def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) -> Zones:
-    """Where the gap is below a ``level``, along the first beam, both neutral lines being ``distance`` apart."""
+    """Zones along the first beam with a gap below ``level``, for a ``distance`` of the neutral lines."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     if level < line_m.longest:
-        return overlap(line, line_m, distance, _seen(model, pair, z, distance), level, _rays(pair, line_m))
-    return overlap(line, line_m, distance + level, _seen(model, pair, z, distance + level), 0.0, _rays(pair, line_m))
+        return overlap(line, line_m, distance, _survey(model, pair, z, distance), level, _rays(pair, line_m))
+    return overlap(line, line_m, distance + level, _survey(model, pair, z, distance + level), 0.0, _rays(pair, line_m))
 
 
 @dataclass(frozen=True, slots=True)
-class _Along:
-    """Gauss points (k,) of an integral along the first beam, and the gap there with its derivatives.
+class _GaussPoints:
+    """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap.
 
-    Of either line the element, the place and the point, ``ds`` of the first's arc; ``by`` what the first line goes by
-    and then the second, (14, k).
+    ``ds`` (k,) is arc length of the first beam. ``by`` (14, k) and ``by_twice`` (14, 14, k) are derivatives of the
+    gap by the element unknowns of the first line, then of the second.
     """
 
     e: Ints
@@ -331,13 +345,13 @@ class _Along:
     by_twice: Array
     normal: Array
 
-    def with_other(self, other: _Along, order: Ints) -> _Along:
-        """These points and those of an integral along the second, put in ``order``."""
+    def with_other(self, other: _GaussPoints, order: Ints) -> _GaussPoints:
+        """These points and the points of an integral along the second beam, in ``order``."""
 
-        def both(one: Array, its: Array) -> Array:
-            return np.concatenate([one, its], axis=-1)[..., order]
+        def both(own: Array, others: Array) -> Array:
+            return np.concatenate([own, others], axis=-1)[..., order]
 
-        return _Along(
+        return _GaussPoints(
             e=np.concatenate([self.e, other.e_m])[order],
             e_m=np.concatenate([self.e_m, other.e])[order],
             zeta=both(self.zeta, other.zeta_m),
@@ -352,7 +366,7 @@ class _Along:
         )
 
 
-def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _Along:
+def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _GaussPoints:
     """The gap at the Gauss points of the first beam's ``zones``."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     points, weights = gauss(quadrature)
@@ -360,20 +374,20 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
     guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
-    # An interval lies within one element, and so do its Gauss points.
+    # an interval and its Gauss points lie within a single element
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
     there = line.around(zeta)
     x = line.nodes[there.element] + there.way
-    faced = pair.faced(line, line_m, zeta, guess)
+    faced = pair.places_facing(line, line_m, zeta, guess)
     zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)
     x_m = line_m.nodes[across.element] + across.way
-    tau = plane(faced.w)
+    tau = as_plane(faced.w)
     n = np.array([-tau[1], tau[0]])
-    d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
-    a = (n * plane(across.bent)).sum(axis=0)
+    d = (n * as_plane(line_difference(line, there, line_m, across))).sum(axis=0)
+    a = (n * as_plane(across.bent)).sum(axis=0)
     Z = np.where(faced.fixed, 1.0, J**2 - d * a)
     side = pair.sides(zeta, zeta_m, d)
     g = side * d - distance
@@ -381,32 +395,35 @@ def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State,
         g += pair.tapers.thinner(zeta, zeta_m)
 
     H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
-    d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
-    p = np.concatenate([along(tau, H, line, e), -along(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:_LINE]), along(n, H_m1, line_m, e_m)])
+    d_q = np.concatenate([projected_gradient(n, H, line, e), -projected_gradient(n, H_m, line_m, e_m)])
+    p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
+    k = np.concatenate([np.zeros_like(d_q[:_LINE]), projected_gradient(n, H_m1, line_m, e_m)])
     pk = p[:, None] * k[None, :]
     d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
     if faced.fixed.any():
         d_qq = np.where(faced.fixed, p[:, None] * p[None, :] / np.where(d == 0.0, 1.0, d), d_qq)
-    d_qq[:_LINE, :_LINE] += twice_along(n, H, line, e)
-    d_qq[_LINE:, _LINE:] -= twice_along(n, H_m, line_m, e_m)
-    return _Along(e, e_m, zeta, zeta_m, plane(x), plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
+    d_qq[:_LINE, :_LINE] += projected_hessian(n, H, line, e)
+    d_qq[_LINE:, _LINE:] -= projected_hessian(n, H_m, line_m, e_m)
+    return _GaussPoints(e, e_m, zeta, zeta_m, as_plane(x), as_plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where a zone meets an end of the first beam, where it matters; else the median.
+    """Resting pressure at an end of the first beam in contact, else the median of the zones.
 
-    Zero where the beams pull apart, and where what meets the end is less than an element: beside ends that are held
-    side by side and part at once.  Their gap is zero there but for round-off, and has nothing to press against.
+    The pressure is κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂); zero where the beams pull apart, and for a contact shorter than
+    an element at the end. Ends held side by side may part at once: their gap is zero up to round-off, and no pressure
+    acts.
     """
     if not touch.closed:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
-    zones = touch.zones.chosen(np.argsort(touch.zones.intervals[:, 0]))  # laps of a beam follow each other in no order
+    zones = touch.zones.chosen(np.argsort(touch.zones.intervals[:, 0]))  # self-contact loops are not ordered
     intervals, zone = zones.intervals, zones.numbers
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
-    widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
+    widths = [
+        np.ptp(intervals[zone == number]) for number in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))
+    ]
     if min(widths) < _LYING:
         return 0.0
     middle, middle_m = intervals.mean(axis=1), zones.zeta_m.mean(axis=1)
@@ -424,31 +441,33 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 
 
-def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones, found: _Along) -> tuple[float, float]:
-    """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam.
+def _missing_force(
+    model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones, gauss_points: _GaussPoints
+) -> tuple[float, float]:
+    """The force ½ ε g²/|x'·τ| missing at intervals cut off by an end of the second beam, and its largest share.
 
-    And the largest share that it is of what a zone presses with; zones without any weight in the whole do not count.
+    The share is relative to the force of the zone; zones with a negligible part of the total force do not count.
     """
     if pair.ended:
         return 0.0, 0.0
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    across = cut_off(zones, second.n)
+    across = cut_ends(zones, second.n)
     if not across.any():
         return 0.0, 0.0
     zeta, zeta_m = zones.intervals[across], zones.zeta_m[across]
     there, there_m = first.around(zeta), second.around(zeta_m)
     back = (there_m.ahead / np.abs(there_m.ahead)).conj()
-    d = (back * apart(first, there, second, there_m)).imag
+    d = (back * line_difference(first, there, second, there_m)).imag
     side = pair.sides(zeta, zeta_m, d)
     if pair.edge_m is not None:
         back = lean(there_m.ahead, pair.edge_m.slope(zeta_m), side).conj()
-        d = (back * apart(first, there, second, there_m)).imag
+        d = (back * line_difference(first, there, second, there_m)).imag
     g = np.minimum(side * d - pair.apart(zeta, zeta_m) - penalty.lead, 0.0)
     ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     left_out = 0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)
     number = zones.numbers
-    each = (-penalty.stiffness * found.ds * found.g).reshape(len(number), -1).sum(axis=1)
-    pushes = np.abs(np.bincount(number, each))
+    forces = (-penalty.stiffness * gauss_points.ds * gauss_points.g).reshape(len(number), -1).sum(axis=1)
+    pushes = np.abs(np.bincount(number, forces))
     missing = np.bincount(number[np.nonzero(across)[0]], left_out, minlength=pushes.size)
     counts = (missing > _WEIGHTLESS * pushes.sum()) & (pushes > 0.0)
     return float(missing.sum()), float((missing[counts] / pushes[counts]).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""All of a scene's contacts, of whichever kind."""
+"""All of a scene's contacts, of any kind."""
 
 from dataclasses import replace
 
@@ -6,170 +6,166 @@ import numpy as np
 
 from cprbm_scene.statement import Scene
 from fea_reference import circle, contact, face
-from fea_reference.crossing import cross, crosses_itself
-from fea_reference.end_on_end import ends_through
-from fea_reference.far import FAR, kept_apart, least_apart
+from fea_reference.crossing import crosses_itself, lines_cross
+from fea_reference.end_on_end import ends_pass_through
+from fea_reference.far import FAR, cannot_touch, gap_lower_bound
 from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
-from fea_reference.zones import Zones, none
+from fea_reference.zones import Zones, no_zones
 
 CLOSED = 1e-9
-"""Of the thickness, a gap that is none."""
+"""Thicknesses: a gap that counts as closed."""
 
 
-_APART = 1e-3  # of the thickness: a gap at which one sees on which side of each other beams lie
+_APART = 1e-3  # thicknesses: gap above which the sides of beams are evident
 
 
 def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
-    """What may touch, in the scene's order."""
-    every: tuple[Contact, ...] = (
+    """The scene's contacts in order."""
+    candidates: tuple[Contact, ...] = (
         *contact.pairs(scene, model),
-        *contact.selves(scene, model),
+        *contact.self_contacts(scene, model),
         *circle.circles(scene, model, penetration),
         *face.faces(scene, model, penetration),
     )
-    found = {one.name: one for one in every}
-    return tuple(found[name] for name in scene.contacts)
+    by_name = {candidate.name: candidate for candidate in candidates}
+    return tuple(by_name[name] for name in scene.contacts)
 
 
-def zones_of(model: Model, what: Contact, z: State) -> Zones:
-    """Where there is overlap in state ``z``."""
-    return model.overlaps.found(z, what, lambda: _zones_of(model, what, z))
+def zones_of(model: Model, pair: Contact, z: State) -> Zones:
+    """Zones of overlap in state ``z``."""
+    return model.overlaps.recall(z, pair, lambda: _zones_of(model, pair, z))
 
 
-def least_gap(model: Model, what: Contact, z: State) -> float:
-    """The least gap in state ``z``; of two beams also where an end of the second is on the side of the first."""
-    least = zones_of(model, what, z).least
-    if not isinstance(what, Pair) or what.roles is not None or least > FAR:
+def least_gap(model: Model, pair: Contact, z: State) -> float:
+    """The least gap in state ``z``; for two beams including ends of the second on the side of the first."""
+    least = zones_of(model, pair, z).least
+    if not isinstance(pair, Pair) or pair.roles is not None or least > FAR:
         return least
-    return min(least, contact.least_at_ends(model, what, z))
+    return min(least, contact.least_at_ends(model, pair, z))
 
 
-def _zones_of(model: Model, what: Contact, z: State) -> Zones:
-    apart = least_apart(model, what, z)
+def _zones_of(model: Model, pair: Contact, z: State) -> Zones:
+    apart = gap_lower_bound(model, pair, z)
     if apart > FAR:
-        return none(apart)
-    match what:
+        return no_zones(apart)
+    match pair:
         case Pair():
-            return contact.zones_of(model, what, z)
+            return contact.zones_of(model, pair, z)
         case Circle():
-            return circle.zones_of(model, what, z)
+            return circle.zones_of(model, pair, z)
         case Face():
-            return face.zones_of(model, what, z)
+            return face.zones_of(model, pair, z)
 
 
-def touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
-    """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
-    key = what, penalty, quadrature, held
-    return model.touches.found(z, key, lambda: _touch(model, what, penalty, quadrature, z, held))
+def touch(
+    model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None = None
+) -> Touch:
+    """Contact energy derivatives, see :func:`fea_reference.contact.touch`; only pairs of beams are held."""
+    key = pair, penalty, quadrature, held_depth
+    return model.touches.recall(z, key, lambda: _touch(model, pair, penalty, quadrature, z, held_depth))
 
 
-def _touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None) -> Touch:
-    match what:
+def _touch(model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None) -> Touch:
+    match pair:
         case Pair():
-            return contact.touch(model, what, penalty, quadrature, z, held)
+            return contact.touch(model, pair, penalty, quadrature, z, held_depth)
         case Circle():
-            return circle.touch(model, what, penalty, quadrature, z)
+            return circle.touch(model, pair, penalty, quadrature, z)
         case Face():
-            return face.touch(model, what, penalty, quadrature, z)
+            return face.touch(model, pair, penalty, quadrature, z)
 
 
-def resting_pressure(model: Model, one: Touch, z: State) -> float:
-    """The line pressure that the axial forces give where a beam lies on what it touches, on average.
-
-    On a straight edge they give none.
-    """
-    match one.pair:
+def resting_pressure(model: Model, evaluated: Touch, z: State) -> float:
+    """Mean line pressure from axial forces where a beam lies on the opposite surface; zero on a straight edge."""
+    match evaluated.pair:
         case Pair():
-            return contact.resting_pressure(model, one, one.pair, z)
+            return contact.resting_pressure(model, evaluated, evaluated.pair, z)
         case Circle():
-            return circle.resting_pressure(model, one, one.pair, z)
+            return circle.resting_pressure(model, evaluated, evaluated.pair, z)
         case Face():
             return 0.0
 
 
-def looked_at(model: Model, what: Contact, z: State) -> Contact:
-    """The same contact; of a beam and itself with the sides on which its places lie in state ``z``."""
-    if isinstance(what, Pair) and what.roles is not None:
-        return replace(what, roles=what.roles.renewed(model.line(model.beams[what.first], z)))
-    return what
+def with_current_sides(model: Model, pair: Contact, z: State) -> Contact:
+    """The contact; for self-contact with the sides of state ``z``."""
+    if isinstance(pair, Pair) and pair.roles is not None:
+        return replace(pair, roles=pair.roles.renewed(model.line(model.beams[pair.first], z)))
+    return pair
 
 
-def open_in(model: Model, what: Contact, z: State) -> Contact:
-    """The same of a contact that is open in state ``z``; of two beams that are near each other, as they lie there."""
-    if not isinstance(what, Pair) or what.roles is not None:
-        return looked_at(model, what, z)
-    apart = least_apart(model, what, z) <= FAR and least_gap(model, what, z) > _APART * what.scale
-    return contact.looked_at(model, what, z) if apart else what
+def open_contact(model: Model, pair: Contact, z: State) -> Contact:
+    """An open contact in state ``z``; for two neighbouring beams with the sides of this state."""
+    if not isinstance(pair, Pair) or pair.roles is not None:
+        return with_current_sides(model, pair, z)
+    apart = gap_lower_bound(model, pair, z) <= FAR and least_gap(model, pair, z) > _APART * pair.scale
+    return contact.with_sides(model, pair, z) if apart else pair
 
 
-def room(model: Model, what: Contact, z: State) -> float:
-    """How far what may touch can move, each against the other, before anything of it is seen to: a lower bound.
-
-    Of a beam and itself, and of an edge, nothing is known.
-    """
-    match what:
+def motion_before_contact(model: Model, pair: Contact, z: State) -> float:
+    """Lower bound of the relative motion before the contact needs evaluation; −∞ for self-contact and edges."""
+    match pair:
         case Pair(roles=None):
-            return contact.room(model, what, z)
+            return contact.motion_before_facing(model, pair, z)
         case Circle():
-            return circle.room(model, what, z)
+            return circle.motion_before_contact(model, pair, z)
         case _:
             return -np.inf
 
 
-def clear(model: Model, what: Contact, z: State) -> float:
-    """How far what may touch can move, each against the other, before it overlaps: by the least gap, a lower bound.
+def motion_before_overlap(model: Model, pair: Contact, z: State) -> float:
+    """Lower bound of the relative motion before an overlap, from the least gap.
 
-    No two places come nearer to each other by more than they move.  Places of a beam beyond an end of the other have
-    no gap, and are as far from it as from that end; of a line's own ends nothing is known.  That a beam bends double
-    within its own thickness is no motion that its elements follow.
+    No two places approach by more than their motions. Places beyond an end of the other beam have no gap; their
+    distance from the beam is their distance from the end. The ends of a line in self-contact have no bound. A beam
+    folded within its own thickness is beyond the elements.
     """
-    least = zones_of(model, what, z).least
-    numbers = (what.first, what.second) if isinstance(what, Pair) else (what.first,)
+    least = zones_of(model, pair, z).least
+    numbers = (pair.first, pair.second) if isinstance(pair, Pair) else (pair.first,)
     longest = [model.line(model.beams[i], z).longest for i in numbers]
-    # what is farther than an element may be known by nodes only, and be nearer between them
+    # a distance above an element's length may be between nodes only, and smaller in between
     least = least if least <= longest[-1] else max(longest[-1], least - max(longest))
-    if not isinstance(what, Pair) or what.ended:
+    if not isinstance(pair, Pair) or pair.ended:
         return least
-    return min(least, contact.ends_apart(model, what, z)) if what.roles is None else -np.inf
+    return min(least, contact.end_circle_distance(model, pair, z)) if pair.roles is None else -np.inf
 
 
-def against(model: Model, what: Contact, before: State, after: State) -> float:
-    """The most by which places of what may touch move against each other on the straight way between two states."""
+def relative_motion(model: Model, pair: Contact, before: State, after: State) -> float:
+    """Upper bound of the relative motion on the straight way between two states; infinite for an edge."""
 
     def way(number: int) -> float:
         dofs = model.node_dofs[:2, model.beams[number].nodes]
         dx, dy = after.values[dofs] - before.values[dofs]
         return float(np.hypot(dx, dy).max())
 
-    match what:
+    match pair:
         case Pair():
-            return way(what.first) + way(what.second)
+            return way(pair.first) + way(pair.second)
         case Circle():
-            x, y, phi = model.body_state(model.bodies[what.body], after) - model.body_state(
-                model.bodies[what.body], before
+            x, y, phi = model.body_state(model.bodies[pair.body], after) - model.body_state(
+                model.bodies[pair.body], before
             )
-            return way(what.first) + float(np.hypot(x, y) + abs(phi) * np.hypot(*what.arm))
+            return way(pair.first) + float(np.hypot(x, y) + abs(phi) * np.hypot(*pair.arm))
         case Face():
             return np.inf
 
 
-def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:
-    """Whether what may touch has passed through each other on the way from one state to another."""
-    if isinstance(what, Circle | Face):
-        gaps = zones_of(model, what, before).least, zones_of(model, what, after).least
-        if kept_apart(model, what, gaps, before, after):
+def passed_through(model: Model, pair: Contact, before: State, after: State) -> bool:
+    """True if the bodies of the contact passed through each other between two states."""
+    if isinstance(pair, Circle | Face):
+        gaps = zones_of(model, pair, before).least, zones_of(model, pair, after).least
+        if cannot_touch(model, pair, gaps, before, after):
             return False
-    if isinstance(what, Circle):
-        return circle.passed(model, what, before, after)
-    if isinstance(what, Face):
-        return face.passed(model, what, before, after)
-    first, second = (model.line(model.beams[i], after) for i in (what.first, what.second))
-    if what.roles is not None:
-        line = model.line(model.beams[what.first], before)
-        return ends_through(what, line, first) or crosses_itself(first, contact.zones_of(model, what, after))
-    # Lines without thickness cross by what the penalty lets through; that is held, and measured.  Where one just
-    # touches the other, chords cross by what their elements bow.
-    held = what.distance == 0.0 and least_gap(model, what, after) <= CLOSED * what.scale
-    return not held and cross(first, second)
+    if isinstance(pair, Circle):
+        return circle.passes_through(model, pair, before, after)
+    if isinstance(pair, Face):
+        return face.passes_through(model, pair, before, after)
+    first, second = (model.line(model.beams[i], after) for i in (pair.first, pair.second))
+    if pair.roles is not None:
+        line = model.line(model.beams[pair.first], before)
+        return ends_pass_through(pair, line, first) or crosses_itself(first, contact.zones_of(model, pair, after))
+    # Lines without thickness cross by the penetration of the penalty, which is held and measured. At mere contact,
+    # chords cross by the sagitta of their elements.
+    in_contact = pair.distance == 0.0 and least_gap(model, pair, after) <= CLOSED * pair.scale
+    return not in_contact and lines_cross(first, second)

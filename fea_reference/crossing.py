@@ -1,4 +1,4 @@
-"""Do neutral lines cross?"""
+"""Intersection of neutral lines."""
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -7,51 +7,53 @@ from cprbm_scene.answer import Array, Flags
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.zones import Zones
 
-_BESIDE = 1.5  # elements beside a zone in which it may cross
-_ROUNDED = 1e-9  # of chords, what they may be apart without being so
-_PARTS = 32  # of an element that are looked at as chords: what they leave of its bow is a thousandth
+_BESIDE = 1.5  # elements: neighbourhood of a zone within which lines may cross
+_ROUNDED = 1e-9  # relative to chord lengths: tolerance of distances
+_PARTS = 32  # chords per element: their sagitta is a thousandth of the element's
 
 
-def cross(first: NeutralLine, second: NeutralLine) -> bool:
-    """Whether any two chords of the lines' elements intersect in their insides."""
+def lines_cross(first: NeutralLine, second: NeutralLine) -> bool:
+    """True if any two chords of the lines' elements intersect in their interiors."""
     i, j = _near(first, second)
     return bool(
         _intersect(first.points[:, i], first.points[:, i + 1], second.points[:, j], second.points[:, j + 1]).any()
     )
 
 
-def crosses_itself(line: NeutralLine, held: Zones) -> bool:
-    """Whether a line crosses itself where nothing is ``held`` apart.
+def crosses_itself(line: NeutralLine, contact_zones: Zones) -> bool:
+    """True if a line crosses itself outside the ``contact_zones``.
 
-    Laps that lie in each other may be nearer than their elements bow.  Where chords of elements intersect, those of
-    their parts, and of the parts of the elements beside them, decide.  What sinks into a penalty may cross by that,
-    and is held, and measured.
+    Coils may be closer than the sagitta of their elements. Where chords of elements intersect, the chords of their
+    parts, and of the neighbours' parts, decide. In contact, lines may cross by the penetration, which is held and
+    measured.
     """
     i, j = _near(line, line)
     i, j = i[i < j], j[i < j]
     crossing = _intersect(line.points[:, i], line.points[:, i + 1], line.points[:, j], line.points[:, j + 1])
-    found = np.stack([i[crossing], j[crossing]], axis=1)
-    if held.intervals.size and found.size:
-        places = np.sort(np.stack([held.intervals, held.zeta_m]), axis=0)  # of both the earlier, then the later
+    candidates = np.stack([i[crossing], j[crossing]], axis=1)
+    if contact_zones.intervals.size and candidates.size:
+        places = np.sort(
+            np.stack([contact_zones.intervals, contact_zones.zeta_m]), axis=0
+        )  # the earlier of both places, then the later
         low, high = (
             side[..., None] + _BESIDE * sign for side, sign in ((places.min(axis=2), -1), (places.max(axis=2), 1))
         )
-        middle = found.T[:, None] + 0.5
-        found = found[~((low < middle) & (middle < high)).all(axis=0).any(axis=0)]
-    if not found.size:
+        middle = candidates.T[:, None] + 0.5
+        candidates = candidates[~((low < middle) & (middle < high)).all(axis=0).any(axis=0)]
+    if not candidates.size:
         return False
     around = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
-    pairs = np.unique(np.clip((found[:, None] + around).reshape(-1, 2), 0, line.n - 1), axis=0)
+    pairs = np.unique(np.clip((candidates[:, None] + around).reshape(-1, 2), 0, line.n - 1), axis=0)
     fine = line.at(np.arange(_PARTS * line.n + 1) / _PARTS)[0]
-    i, j = (_PARTS * one[:, None] + np.arange(_PARTS) for one in pairs.T)
+    i, j = (_PARTS * element[:, None] + np.arange(_PARTS) for element in pairs.T)
     ends = (fine[:, i, None], fine[:, i + 1, None], fine[:, j][:, :, None], fine[:, j + 1][:, :, None])
     return bool(_intersect(*ends).any())
 
 
 def _near(first: NeutralLine, second: NeutralLine) -> tuple[Index, Index]:
-    """Numbers (k,) of one line's elements and another's, among which are all pairs whose chords may intersect.
+    """Pairs (k,) of element numbers of two lines, including all pairs with intersecting chords.
 
-    Their middles are no farther from each other than the halves of both chords are long.
+    Their midpoints are no farther apart than the sum of both half chords.
     """
     lines = (first, second)
     trees = [KDTree(0.5 * (line.points[:, :-1] + line.points[:, 1:]).T) for line in lines]
@@ -61,7 +63,7 @@ def _near(first: NeutralLine, second: NeutralLine) -> tuple[Index, Index]:
 
 
 def _intersect(a: Array, b: Array, c: Array, d: Array) -> Flags:
-    """Whether ways from ``a`` to ``b`` and from ``c`` to ``d`` intersect in their insides, each (2, ...)."""
+    """True where segments from ``a`` to ``b`` and from ``c`` to ``d``, (2, ...) all, intersect in their interiors."""
     return np.asarray((_turn(a, b, c) * _turn(a, b, d) < 0.0) & (_turn(c, d, a) * _turn(c, d, b) < 0.0))
 
 

@@ -1,25 +1,24 @@
-"""Is an equilibrium a minimum?  The smallest curvature of the potential energy on the feasible directions.
+"""Smallest curvature of the potential energy on the feasible directions: stability of an equilibrium.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-K       the tangent of the Lagrangian, with the joints' rows and the axial forces
-u, q    motions of all nodes and bodies; those that no joint, stop, guide or drive gives, u = T q
-H, B    K's block of the motions, and its rows of the axial forces by them
-c l     the axial forces' diagonal in K, turned round: compliance times length
+K       tangent of the Lagrangian, with the joints' rows and the axial forces
+u, q    motions of all nodes and bodies; the independent motions under all constraints, u = T q
+H, B    K's block of the motions, and its rows of the axial forces by the motions
+c l     negative diagonal of the axial forces in K: compliance times length
 M       lumped mass, diagonal in u: arc length for the nodes, one for the bodies
 A       T^T (H + B^T (c l)⁻¹ B) T
 μ       curvatures: A q = μ T^T M T q, in EI per length of the longest beam to the fourth
 ======  =====================================================================================
 
-Where a beam does not stretch there is no c; it is given a small one, under which its curvatures are no larger: on the
-feasible directions B u = 0, so an A that is positive definite proves that H is there.
+An inextensible beam has c = 0 and is given a small c, which does not lower the curvatures: B u = 0 holds on the
+feasible directions, so that a positive definite A proves a positive definite H there.
 
-A is symmetric and, ordered along the beams, a band.  By Sylvester's law of inertia A − σ T^T M T has as many negative
-pivots as there are μ below σ, and Cholesky's method ends at the first.  The least μ is bracketed with it: from above
-by a Ritz value of Lanczos' method with (A − σ T^T M T)⁻¹, which lies above it whatever the start, from below by a σ
-that leaves no negative pivot.  Round-off moves a pivot by the unit round-off times the diagonal of A, hence a μ by some
-u 12 EI/h⁴.
+A is symmetric and, ordered along the beams, banded. By Sylvester's law of inertia A − σ T^T M T has as many negative
+pivots as there are μ below σ. Cholesky's method stops at the first negative pivot. This brackets the least μ. An
+upper bound is a Ritz value of Lanczos' method with (A − σ T^T M T)⁻¹, from any start vector; a lower bound is a σ
+without negative pivot. Round-off moves a pivot by the unit round-off times the diagonal of A, hence μ by u 12 EI/h⁴.
 """
 
 from collections.abc import Callable
@@ -39,47 +38,48 @@ from fea_reference.stops import acting_stops
 from fea_reference.system import System
 
 _STEPS = 30
-_LOOK = 4  # steps after which Lanczos' method looks at what it has
-_ENOUGH = 1e-6  # of the Ritz value: what its vector may leave; the value's own error is of second order in that
+_LOOK = 4  # steps between two checks of convergence in Lanczos' method
+_ENOUGH = 1e-6  # times the Ritz value: accepted residual of its vector; the error of the value is of second order
 _SEED = 20200103
-_STIFF = 1e6  # EI/length²: EA of a beam that does not stretch, a hundred times that of a stout one
-_CLOSE = 0.9  # of a Ritz value: the μ that is proven to have none below it
+_STIFF = 1e6  # EI/length²: EA of an inextensible beam, a hundred times the EA of a stout beam
+_CLOSE = 0.9  # times a Ritz value: proven lower bound of all μ
 _TRIALS = 60
 
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """The least ``curvature`` μ, and its motions u among all unknowns, ``direction`` (size,) with uᵀ M u = 1."""
+    """The least ``curvature`` μ and its mode u, ``direction`` (size,) with uᵀ M u = 1."""
 
     curvature: float
     direction: Array
 
 
-def positive(model: Model, system: System) -> bool:
-    """Whether all μ are above zero, as far as round-off lets it be seen."""
+def all_positive(model: Model, system: System) -> bool:
+    """True if all μ are positive up to round-off."""
     return _factor(_feasible(model, system).stiffness) is not None
 
 
 def softest(model: Model, system: System) -> Mode:
-    """The least μ, if it is above zero: a Ritz value, and a tenth less is proven to lie below all.
+    """The least μ and its mode, accurate to a tenth.
 
-    Where that cannot be proven, a value that can, and if not even zero can, a Ritz value above one below zero that can:
-    there is a negative curvature about as large, or round-off hides that there is none.
+    For a positive least μ a Ritz value; Cholesky's method proves that 0.9 of the value is a lower bound. Without such
+    a proof a smaller value with a proof is returned. If even zero has none, the result is negative: a Ritz value
+    above a proven negative bound. Then a curvature of this size is negative, or round-off hides the sign.
     """
     on, root = _feasible(model, system), np.sqrt(lumped_mass(model))
 
     def factor(sigma: float) -> Array | None:
-        """Cholesky's of A − σ M; None where there is a pivot below zero."""
+        """Cholesky factor of A − σ M; None for a negative pivot."""
         return _factor(on.stiffness - sigma * on.inertia)
 
     at_zero = factor(0.0)
     if at_zero is None:
         below = _below_zero(factor)
         at_below = factor(below)
-        if at_below is None:  # round-off, however far below
+        if at_below is None:  # round-off, however low the bound
             return Mode(below, np.zeros(model.size))
         ritz, u = _ritz(on, at_below, root)
-        # rounded to zero it would not say that there was a negative pivot
+        # a zero would not show the negative pivot
         return Mode(min(below + ritz, -np.finfo(float).tiny), u)
     ritz, u = _ritz(on, at_zero, root)
     sigma = ritz
@@ -88,28 +88,28 @@ def softest(model: Model, system: System) -> Mode:
     return Mode(sigma, u)
 
 
-def leaning(model: Model, system: System, drag: float) -> Array:
-    """Motions u (size,) under faint moments 1 + s per length on all sections, against a ``drag``, EI per length⁴.
+def moment_mode(model: Model, system: System, drag: float) -> Array:
+    """Motion u (size,) under small moments 1 + s per length on all sections, against a ``drag`` (EI per length⁴).
 
-    s is the arc length along the beams in the scene's order, in lengths of the longest.  Among all motions that a
-    bifurcation leaves free, the moments choose one that depends neither on the mesh nor on the order of assembly.  The
-    drag is above every negative curvature; where it is not, the moments themselves.
+    s is the arc length along the beams in the scene's order, in lengths of the longest. At a bifurcation the moments
+    select a mode independent of the mesh and of the order of assembly. The drag has to exceed every negative
+    curvature; otherwise the moments themselves are returned.
     """
     on, moments = _feasible(model, system), np.zeros(model.size)
     factor = _factor(on.stiffness + drag * on.inertia)
     lengths = lumped_mass(model)[model.node_dofs[2]]
     moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths))
-    return moments if factor is None else _solved(on, factor, moments)
+    return moments if factor is None else _solve(on, factor, moments)
 
 
 @dataclass(frozen=True, slots=True)
 class _Feasible:
-    """The feasible directions, in an order that makes A a band.
+    """The feasible directions, in an order with a small bandwidth of A.
 
     Attributes:
-        T: all unknowns' motions by them (size, q); back: its transpose.
-        place: of every direction in that order, (q,).
-        stiffness, inertia: lower halves of A and T^T M T (width + 1, q), in LAPACK's order.
+        T: motions of all unknowns by the directions (size, q); back: the transpose.
+        place: position (q,) of every direction in this order.
+        stiffness, inertia: lower halves of A and T^T M T (width + 1, q), in LAPACK's band storage.
     """
 
     T: csr_array
@@ -120,7 +120,7 @@ class _Feasible:
 
 
 def _factor(band: Array) -> Array | None:
-    """Cholesky's of a matrix by the lower half of its band; None where there is a pivot below zero."""
+    """Cholesky factor of a matrix in lower band storage; None for a negative pivot."""
     try:
         return np.asarray(cholesky_banded(band, lower=True, check_finite=False))
     except LinAlgError:
@@ -128,7 +128,7 @@ def _factor(band: Array) -> Array | None:
 
 
 def _feasible(model: Model, system: System) -> _Feasible:
-    """T and A."""
+    """T, A and the lumped mass on the feasible directions."""
     tangent = system.tangent
     K = csr_array((tangent.data, tangent.indices, tangent.indptr), tangent.shape)  # symmetric
     T = _directions(model, system, K)
@@ -148,36 +148,36 @@ def _feasible(model: Model, system: System) -> _Feasible:
 
 
 def _directions(model: Model, system: System, K: csr_array) -> csr_array:
-    """T: every motion by those that nothing holds, follows or guides; zero for what is no motion."""
+    """T: all motions by the independent motions; zero rows for forces and multipliers."""
     joints = [joint for joint in model.joints if not model.free(joint, system.acting)]
     stops = [stop for stop, _ in acting_stops(model.stops, system.acting)]
-    # A joint's row is its node's motion, less what the body makes of it, and so is a stop's.
-    row_of = {int(dof): int(row) for one in joints for dof, row in zip(one.dofs, one.rows, strict=False)}
+    # a row of a joint or stop is the node's motion minus the body's contribution
+    row_of = {int(dof): int(row) for joint in joints for dof, row in zip(joint.dofs, joint.rows, strict=False)}
     row_of |= {stop.theta: stop.row for stop in stops}
     free = np.ones(model.size, dtype=bool)
     free[list(row_of)] = False
     nodes = model.node_dofs.ravel()
-    alone = nodes[free[nodes]]
-    rows, columns, entries = [alone], [np.arange(alone.size)], [np.ones(alone.size)]
-    count = alone.size
+    independent = nodes[free[nodes]]
+    rows, columns, entries = [independent], [np.arange(independent.size)], [np.ones(independent.size)]
+    count = independent.size
     of_bodies: dict[int, tuple[Index, Array]] = {}
-    for group in _together(model):
+    for group in _connected_bodies(model):
         dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
-        held = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
-        held += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
-        left = null_space(K[held][:, dofs].toarray()) if held else np.eye(dofs.size)
-        here = count + np.arange(left.shape[1])
+        constrained = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
+        constrained += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
+        free_motions = null_space(K[constrained][:, dofs].toarray()) if constrained else np.eye(dofs.size)
+        here = count + np.arange(free_motions.shape[1])
         count += here.size
-        of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, left, strict=True)}
-    ways = [(dof, dof, 1.0) for dof in of_bodies]
+        of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, free_motions, strict=True)}
+    couplings = [(dof, dof, 1.0) for dof in of_bodies]
     for dof, row in row_of.items():
         entry = slice(K.indptr[row], K.indptr[row + 1])
-        ways += [
+        couplings += [
             (dof, int(other), -float(value))
             for other, value in zip(K.indices[entry], K.data[entry], strict=True)
             if int(other) in of_bodies
         ]
-    for dof, other, value in ways:
+    for dof, other, value in couplings:
         here, line = of_bodies[other]
         rows.append(np.full(here.size, dof))
         columns.append(here)
@@ -185,8 +185,8 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
     return csr_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (model.size, count))
 
 
-def _together(model: Model) -> list[set[int]]:
-    """Numbers of the bodies that move, those together that hinges join."""
+def _connected_bodies(model: Model) -> list[set[int]]:
+    """Sets of moving bodies connected by hinges."""
     groups = [{i} for i, body in enumerate(model.bodies) if body.dofs is not None]
     for hinge in model.hinges:
         joined = [group for group in groups if group & set(hinge.bodies)]
@@ -196,8 +196,8 @@ def _together(model: Model) -> list[set[int]]:
 
 
 def _bands(place: Index, *matrices: csr_array) -> list[Array]:
-    """The lower halves of symmetric matrices (m, m), rows and columns at their ``place``, all as wide as the widest."""
-    entries = [(np.repeat(place, np.diff(one.indptr)), place[one.indices], one.data) for one in matrices]
+    """Lower bands of symmetric matrices (m, m) in the order ``place``, all of the largest width."""
+    entries = [(np.repeat(place, np.diff(matrix.indptr)), place[matrix.indices], matrix.data) for matrix in matrices]
     width = max(int((rows - columns).max(initial=0)) for rows, columns, _ in entries)
     bands = []
     for rows, columns, data in entries:
@@ -209,7 +209,7 @@ def _bands(place: Index, *matrices: csr_array) -> list[Array]:
 
 
 def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
-    """1 over the largest Ritz value of M^½ T A⁻¹ T^T M^½, whose eigenvalues are 1/μ and zeros, and its u (size,)."""
+    """Reciprocal of the largest Ritz value of M^½ T A⁻¹ T^T M^½, with eigenvalues 1/μ and zeros, and its u (size,)."""
     moving = np.flatnonzero(root)
     v = np.zeros(root.size)
     v[moving] = root[moving] * np.random.default_rng(_SEED).standard_normal(moving.size)
@@ -219,7 +219,7 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     beside: list[float] = []
     for step in range(_STEPS):
         Q[step] = v
-        w = root * _solved(on, factor, root * v)
+        w = root * _solve(on, factor, root * v)
         diagonal.append(float(v @ w))
         so_far = Q[: step + 1]
         w -= so_far.T @ (so_far @ w)
@@ -237,23 +237,23 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     return 1.0 / float(values[-1]), u
 
 
-def _solved(on: _Feasible, factor: Array, forces: Array) -> Array:
-    """T A⁻¹ T^T of ``forces`` (size,) with the factor of A."""
+def _solve(on: _Feasible, factor: Array, forces: Array) -> Array:
+    """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
     right = np.empty(on.place.size)
     right[on.place] = on.back @ forces
     return np.asarray(on.T @ dpbtrs(factor, right, lower=1)[0][on.place])
 
 
 def _below_zero(factor: Callable[[float], Array | None]) -> float:
-    """The largest σ, to a tenth of itself, that leaves no negative pivot."""
-    none, some = -1.0, 0.0
+    """The largest σ without negative pivot, to a tenth of its value."""
+    definite, indefinite = -1.0, 0.0
     for _ in range(_TRIALS):
-        if factor(none) is not None:
+        if factor(definite) is not None:
             break
-        none, some = 4.0 * none, none
+        definite, indefinite = 4.0 * definite, definite
     for _ in range(_TRIALS):
-        if some - none <= -0.1 * none:
+        if indefinite - definite <= -0.1 * definite:
             break
-        middle = 0.5 * (none + some)
-        none, some = (none, middle) if factor(middle) is None else (middle, some)
-    return none
+        middle = 0.5 * (definite + indefinite)
+        definite, indefinite = (definite, middle) if factor(middle) is None else (middle, indefinite)
+    return definite

@@ -53,7 +53,7 @@ def sample(curve: Curve, fractions: Array) -> tuple[Array, Array]:
 
 
 def _turning(arc: Arc) -> float:
-    """The angle from start to end about the centre, counter-clockwise positive, less than a full turn."""
+    """Angle from start to end about the centre, positive counter-clockwise, less than a full turn."""
     (cx, cy), (ax, ay), (bx, by) = arc.center, arc.start, arc.end
     swept = (math.atan2(by - cy, bx - cx) - math.atan2(ay - cy, ax - cx)) % (2 * math.pi)
     return swept if arc.direction == "counterclockwise" else swept - 2 * math.pi

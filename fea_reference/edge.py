@@ -1,10 +1,10 @@
-"""How far a beam's edge is from its neutral line, along the beam.
+"""Distance of a beam's edge from its neutral line, along the beam.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 ζ       place on the beam: element number plus ξ in [0, 1] within the element
-T       half of the thickness, zero for a line: it goes straight between the section's knots
+T       half of the thickness, zero for a line, linear between the section's knots
 ======  =====================================================================================
 """
 
@@ -16,12 +16,12 @@ import numpy as np
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import Beam
 
-_EVEN = 1e-9  # of the largest slope: jumps that are none
+_EVEN = 1e-9  # times the largest slope: negligible jump
 
 
 @dataclass(frozen=True)
 class Edge:
-    """``half`` (k,) is T at the ``knots`` (k,), which are places ζ from the beam's start to its end; no unit."""
+    """``half`` (k,) is T at the ``knots`` (k,), places ζ from the beam's start to its end; dimensionless."""
 
     knots: tuple[float, ...]
     half: tuple[float, ...]
@@ -43,12 +43,12 @@ class Edge:
 
     @cached_property
     def varies(self) -> bool:
-        """Whether T does."""
+        """True if T varies."""
         return self.nearest < self.farthest
 
     @cached_property
     def corners(self) -> tuple[Array, Array, Array]:
-        """Inner knots (c,) at which ∂T/∂ζ jumps, and ∂T/∂ζ before and behind them."""
+        """Inner knots (c,) with a jump of ∂T/∂ζ, and ∂T/∂ζ before and behind."""
         places, _, slopes = self._table
         jumps = np.abs(np.diff(slopes)) > _EVEN * np.abs(slopes).max()
         return places[1:-1][jumps], slopes[:-1][jumps], slopes[1:][jumps]
@@ -61,7 +61,7 @@ class Edge:
         return np.asarray(np.interp(zeta, places, half))
 
     def slope(self, zeta: Array) -> Array:
-        """∂T/∂ζ at places ``zeta`` (k,); at a knot what follows."""
+        """∂T/∂ζ at places ``zeta`` (k,); at a knot the value behind."""
         if not self.varies:
             return np.zeros(zeta.shape)
         places, _, slopes = self._table
@@ -69,13 +69,13 @@ class Edge:
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
-        """Knots and T at them (k,), and ∂T/∂ζ between them (k−1,)."""
+        """Knots and their T (k,), and ∂T/∂ζ between knots (k−1,)."""
         places, half = np.array(self.knots), np.array(self.half)
         return places, half, np.diff(half) / np.diff(places)
 
 
 def edge_of(beam: Beam, elements: int, unit_length: float, *, thick: bool) -> Edge:
-    """The edge of a ``thick`` beam of so many even ``elements``, or the neutral line of any other."""
+    """The edge of a ``thick`` beam with equal ``elements``; of other beams the neutral line."""
     half = 0.5 * beam.thickness_at(beam.knots) / unit_length if thick else np.zeros_like(beam.knots)
-    # rounded, so that a knot at a node is that node
+    # rounded, so that a knot at a node coincides with the node
     return Edge(tuple(np.round(beam.knots * elements, 9).tolist()), tuple(half.tolist()))

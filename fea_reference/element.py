@@ -1,15 +1,15 @@
-"""The corotational beam element with an independent axial force.
+"""Corotational beam element with an independent axial force.
 
 =======  =====================================================================================
 symbol   meaning (lengths over the longest beam, forces over EI/length²)
 =======  =====================================================================================
 l, α     length and angle of the chord between an element's nodes
-ϑ        end rotations against the chord, (2,); ϑ⁰ those of the undeformed curve's tangents
+ϑ        end rotations against the chord, (2,); ϑ⁰ of the undeformed curve's tangents
 Δ        ϑ − ϑ⁰
 L, l⁰    arc length of the undeformed element, and its chord
 θ(s)     rotation of the section against the chord: a parabola through both ends
-γ        angle of shear, one per element: w' = θ + γ, and w is zero at both ends, so γ = −∫θ ds / L
-N        axial force, an unknown of its own
+γ        shear angle, one per element: w' = θ + γ, and w is zero at both ends, so γ = −∫θ ds / L
+N        axial force, an independent unknown
 c_N      axial compliance, the mean of 1/(EA), zero for an inextensible beam
 EI, GA   bending stiffness; effective shear stiffness k_s G A, k_s = 5/6; both may vary along the element
 F        flexibility of the end rotations, :mod:`fea_reference.section`; K = F⁻¹
@@ -21,22 +21,22 @@ The element's contribution to the Hellinger–Reissner functional is
     Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'² − (1 − 2 GA c_N) γ²) ds ] − ½ c_N L N²
           + L [ (⅓ − ½ GA c_N) GA γ⁴ − ½ (1 − GA c_N) c_N N² γ² ],
 
-with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is
-neither locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending
-and shear stationary, with the element's mean compliances: without shear w is the cubic of Hermite, whatever EI does,
-and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
+with the membrane strain averaged over the element (a shallow arch on its chord). A curved element therefore neither
+locks nor shortens by its own curvature. The parabola's middle value makes the energy of bending and shear stationary,
+with the element's mean compliances. Without shear w is the Hermite cubic, whatever EI does, and (½/L) ∫ w'² ds =
+(2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
 
-The term in γ² makes the limit of fine elements Reissner's beam (ZAMP 23, 1972), with strains along and across the
-section.  Let the line have the stretch λ and lean from the section's normal by γ.  Then the strains are λ cos γ − 1 and
+The term in γ² makes Reissner's beam (ZAMP 23, 1972) the limit of fine elements, with strains along and across the
+section. Let the line have the stretch λ and lean from the section's normal by γ. Then the strains are λ cos γ − 1 and
 λ sin γ, and to second order
 
     ½ EA (λ cos γ − 1)² + ½ GA (λ sin γ)² ≈ ½ EA (λ − 1 − ½ γ²)² + ½ GA γ² + GA (λ − 1) γ²,
 
-where λ − 1 is N c_N up to a term in γ².  Without the term, N acts along the line (Engesser's beam), and displacements
-differ by N/GA of the share of shear.  Without the terms of fourth order in γ and N they differ by ⅔ γ² of this share,
-which no mesh shows.  With λ eliminated by N all orders are N + ½ EA − ½ (N + EA cos γ)²/(EA cos² γ + GA sin² γ).
-Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1,
-ch. 7.
+where λ − 1 is N c_N up to a term in γ². Without the term, N acts along the line (Engesser's beam), and displacements
+differ by N/GA of the share of shear. Without the terms of fourth order in γ and N they differ by ⅔ γ² of this share,
+which no mesh shows. With λ eliminated by N all orders are N + ½ EA − ½ (N + EA cos γ)²/(EA cos² γ + GA sin² γ).
+
+Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1, ch. 7.
 """
 
 from dataclasses import dataclass
@@ -51,11 +51,11 @@ from fea_reference.state import State
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """What n elements keep of their undeformed shape: element last in every array.
+    """Undeformed data of n elements; the element is the last index of every array.
 
-    ``length`` L, ``chord`` l⁰, ``compliance`` c_N (n,); ``slip`` c, ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2, n);
-    ``bending`` K, ``shortening`` ∫ (∂w'/∂Δ ∂w'/∂Δ − (1 − 2 GA c_N) ∂γ/∂Δ ∂γ/∂Δ) ds (2, 2, n);
-    ``fourth`` (2, n) the factors of γ⁴ and −½ N² γ², zero in elements with a moment between nodes.
+    ``length`` L, ``chord`` l⁰, ``compliance`` c_N (n,); ``slip`` c, ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2,
+    n); ``bending`` K, ``shortening`` ∫ (∂w'/∂Δ ∂w'/∂Δ − (1 − 2 GA c_N) ∂γ/∂Δ ∂γ/∂Δ) ds (2, 2, n). The rows of
+    ``fourth`` (2, n) are the factors of γ⁴ and −½ N² γ², zero in elements with a moment between nodes.
     """
 
     length: Array
@@ -71,7 +71,7 @@ class Elements:
 
 @dataclass(frozen=True, slots=True)
 class ElementForces:
-    """Values and derivatives of Π_e by (x₁, y₁, θ₁, x₂, y₂, θ₂, N): element last.
+    """Derivatives of Π_e by (x₁, y₁, θ₁, x₂, y₂, θ₂, N); the element is the last index.
 
     ``gradient`` (7, n), ``hessian`` (7, 7, n), ``energy`` the strain energy (n,), ``rotation`` ϑ (2, n).
     """
@@ -90,26 +90,26 @@ def reference(
     axial: Array,
     shear: Array,
 ) -> Elements:
-    """Integrate what the elements need over the undeformed beams.
+    """Undeformed data of the elements, integrated over the beams.
 
     Args:
-        mesh: lines whose only coordinate is the arc length.
+        mesh: lines with the arc length as their only coordinate.
         points: nodes (m, 2); tangents: tangent angles at the nodes (m,).
         flexibility: F without shear (2, 2, n); axial: ∫ ds/(EA); shear: ∫ ds/(GA), of every element (n,).
     """
     basis = CellBasis(mesh, ElementLineP2(), intorder=4)
     D = _local(BilinearForm(lambda u, v, _: u.grad[0] * v.grad[0]), basis)
     G = _local(BilinearForm(lambda u, v, _: u * v), basis)
-    m = G.sum(axis=1)  # ∫ of each function: together they are one
+    m = G.sum(axis=1)  # ∫ of each function; the functions sum to one
     L = m.sum(axis=0)
 
     chord = points[mesh.t[1]] - points[mesh.t[0]]
     alpha = np.arctan2(chord[:, 1], chord[:, 0])
     rotation = _wrapped(tangents[mesh.t] - alpha)
 
-    # of an even moment: Δ = (−1, 1) turns the element by ∫ ds/(EI)
+    # for a constant moment Δ = (−1, 1) is a rotation by ∫ ds/(EI)
     turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
-    stiff, rigid = (_section_rotation(D, m, one / turning) for one in (shear, 0.0 * shear))
+    stiff, rigid = (_section_rotation(D, m, compliance / turning) for compliance in (shear, 0.0 * shear))
     K = _inverse(flexibility + shear / L**2)
     stretch = np.divide(axial, shear, out=np.zeros_like(L), where=shear > 0.0)  # GA c_N
     slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, G, stiff)  # ∫ w⁰' ds = 0
@@ -125,15 +125,15 @@ def _local(form: BilinearForm, basis: CellBasis) -> Array:
 
 
 def _inverse(F: Array) -> Array:
-    """Of symmetric matrices (2, 2, n)."""
+    """Inverses of symmetric matrices (2, 2, n)."""
     return np.asarray(np.array([[F[1, 1], -F[0, 1]], [-F[1, 0], F[0, 0]]]) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]))
 
 
 def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
     """θ at both ends and in the middle by the end rotations, (3, 2, n); ``ratio`` is EI/GA (n,).
 
-    The middle makes the energy ½ EI θᵀ D θ + ½ (GA/L) (mᵀθ)² stationary: differentiated by the middle value
-    and divided by GA/L.
+    The middle value makes the energy ½ EI θᵀ D θ + ½ (GA/L) (mᵀθ)² stationary: the derivative by the middle value,
+    divided by GA/L.
     """
     flexibility = ratio * m.sum(axis=0)
     middle = -(flexibility * D[2, :2] + m[2] * m[:2]) / (flexibility * D[2, 2] + m[2] ** 2)
@@ -141,7 +141,7 @@ def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
 
 
 def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
-    """Value and derivatives in ``state``, its unknowns ``dofs`` (7, n) in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
+    """Forces and stiffness of elements with unknowns ``dofs`` (7, n), in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
     theta = _wrapped(state[dofs[[2, 5]]] - np.arctan2(dy, dx)) + state.rest[dofs[[2, 5]]]
@@ -186,7 +186,7 @@ class Shear:
 
 
 def shear(elements: Elements, part: slice | Index, dofs: Index, state: State) -> Shear:
-    """What γ changes by, of those elements that are ``part`` of all, with unknowns ``dofs`` (7, n)."""
+    """Derivatives of γ for the elements ``part``, with unknowns ``dofs`` (7, n)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
     l, slip = np.hypot(dx, dy), elements.slip[:, part]  # noqa: E741 - the chord's length
     r, z, turn = _chord(dx, dy, l)
@@ -196,14 +196,14 @@ def shear(elements: Elements, part: slice | Index, dofs: Index, state: State) ->
 
 
 def shear_angle(elements: Elements, part: slice, dofs: Index, state: State) -> Array:
-    """γ of the same elements, (n,)."""
+    """γ (n,) of the elements ``part``, with unknowns ``dofs`` (7, n)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
     theta = _wrapped(state[dofs[[2, 5]]] - np.arctan2(dy, dx)) + state.rest[dofs[[2, 5]]]
     return np.asarray(-(elements.slip[:, part] * (theta - elements.rotation[:, part])).sum(axis=0))
 
 
 def layer(elements: Elements, e: int) -> float:
-    """√(EI/GA) of an element over its length: that of an even one has a slip of ½ Φ/(1 + Φ), Φ = 12 EI/(GA L²)."""
+    """√(EI/GA) of an element over its length; a constant section has a slip of ½ Φ/(1 + Φ), Φ = 12 EI/(GA L²)."""
     slip = float(elements.slip[:, e].mean())
     return float(np.sqrt(slip / (6.0 * (1.0 - 2.0 * slip))))
 
@@ -221,5 +221,5 @@ def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noq
 
 
 def _wrapped(angle: Array) -> Array:
-    """The same angle in [−π, π], with all its digits if it is there already."""
+    """The angle in [−π, π], without round-off if already there."""
     return np.asarray(angle - 2 * np.pi * np.round(angle / (2 * np.pi)))

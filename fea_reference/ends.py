@@ -1,26 +1,25 @@
-"""Where a zone of contact ends: the free side, continued to where it would lie on what it touches.
+"""Ends of a contact zone, extrapolated from the curvature of the free side.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 s       arc length on the first beam; s_e where the penalty's pressure ends
 κ       curvature by undeformed arc length: κ⁰ + M/EI, with M by statics
-κ_o     curvature that the first beam would have, if it lay on what it touches there
+κ_o     curvature of the first beam if it conformed to the opposite surface there
 χ       relative curvature, of the sign that opens the gap on the free side
 w       width of the layer over which a penalty spreads a force at a zone's end
 ======  =====================================================================================
 
-The force at the end of a zone acts at a point c, where χ is zero and begins to grow.  A penalty spreads it over a layer
-of width w about c, so that the overlap ends at an s_e of c + O(w).  Beyond s_e there is no pressure, and there the
-beam is an elastica under the same resultants as the exact one beyond c, but for O(w²): continued backwards without
-pressure it has χ = 0 at c + O(w²).  χ is read at three places beyond s_e, from the moments that balance what acts
-before them, and continued as a parabola.  At a beam's end, or where the other beam ends, there is no free side, and
-the zone ends there itself.
+In rigid contact the force at the end of a zone acts at a point c, where χ is zero and starts to grow. A penalty
+spreads the force over a layer of width w about c, so that the overlap ends at s_e = c + O(w). Beyond s_e there is no
+pressure. There the beam is an elastica with the resultants of the exact solution up to O(w²); continued backwards
+without pressure, χ vanishes at c + O(w²). χ is evaluated at three places beyond s_e, with moments from statics, and
+extrapolated as a parabola. At an end of either beam there is no free side, and the zone ends there.
 
-Of a contact in a point, χ is positive on either side: continued through the point, both sides reach zero beyond it, so
-that the zone would begin behind its end, or beside its pressure; or χ falls on the way out and has no zero inwards.
-Then it is the pressure's centre.  A contact in several points begins and ends in points of their own.
-Zones within the places that χ is read at are one contact: a penalty may press beside a sheared point.
+For a contact in a point χ is positive on both sides. Extrapolated through the point, both zeros lie beyond, so that
+the zone would begin behind its end or beside its pressure; or χ decreases outwards without a zero inwards. The centre
+of pressure is then the end. A contact in several points begins and ends in different points. Zones closer than the
+three places of χ count as a single contact: beside a sheared point a penalty may press in two zones.
 """
 
 import numpy as np
@@ -28,7 +27,7 @@ import numpy as np
 from cprbm_scene.answer import Array
 from fea_reference.circle import centre
 from fea_reference.edge import Edge
-from fea_reference.face import beside
+from fea_reference.face import edge_distances
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import BeamPart, Model
 from fea_reference.recovery import bending_moment
@@ -36,30 +35,32 @@ from fea_reference.system import System
 from fea_reference.touch import Circle, Face, Touch
 
 _AT_END = 1e-6  # elements
-_NOTHING = 1e-9  # of the resultant
-_READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e
+_NOTHING = 1e-9  # times the resultant
+_READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e: places of χ
 
 
 def ends(model: Model, system: System, touch: Touch) -> Array:
-    """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
+    """Places ζ (2,) on the first beam at the beginning of the first zone and the end of the last."""
     zones, weight = touch.zones, np.hypot(*touch.force).reshape(len(touch.zones.intervals), -1)
-    # a clamped end that just touches overlaps by round-off, and presses by no more
+    # a clamped end in mere contact overlaps and presses by round-off
     force = weight.sum(axis=1)
     pressed = np.flatnonzero(force > _NOTHING * force.sum())
     begins, stops = zones.intervals[pressed].T
     outer = int(pressed[np.argmin(begins)]), int(pressed[np.argmax(stops)])
-    found = np.array([_continued(model, system, touch, at, way) for at, way in zip(outer, (-1.0, 1.0), strict=True)])
+    extrapolated = np.array(
+        [_continued(model, system, touch, at, way) for at, way in zip(outer, (-1.0, 1.0), strict=True)]
+    )
     moment = (weight * touch.zeta.reshape(weight.shape)).sum(axis=1)
     order = np.argsort(zones.intervals[:, 0])
     apart = zones.intervals[order[1:], 0] - zones.intervals[order[:-1], 1] > _READ[-1]
     number = np.append(0, np.cumsum(apart))[np.argsort(order)]
     middle = np.array([moment[number == number[at]].sum() / force[number == number[at]].sum() for at in outer])
-    points = np.array([1.0, -1.0]) * (found - middle) > 0.0
-    return np.where(points | (points[::-1] & (number[outer[0]] == number[outer[1]])), middle, found)
+    points = np.array([1.0, -1.0]) * (extrapolated - middle) > 0.0
+    return np.where(points | (points[::-1] & (number[outer[0]] == number[outer[1]])), middle, extrapolated)
 
 
 def _continued(model: Model, system: System, touch: Touch, at: int, outwards: float) -> float:
-    """Where the zone ends that the pressure leaves in the interval ``at``, its free side lying ``outwards``."""
+    """End of the zone with interval ``at``, extrapolated from the free side in direction ``outwards``."""
     side = 0 if outwards < 0.0 else 1
     zeta, facing = float(touch.zones.intervals[at, side]), float(touch.zones.zeta_m[at, side])
     n = model.line(model.beams[touch.pair.first], system.z).n
@@ -71,20 +72,20 @@ def _continued(model: Model, system: System, touch: Touch, at: int, outwards: fl
     chi = _relative_curvature(model, system, touch, beyond, facing)
     if chi is None:
         return zeta
-    # χ along the way inwards, by a parabola through the three.
-    way = np.abs(beyond - zeta)
-    a, b, c = np.polyfit(way, chi, 2)
+    # χ over the distance inwards, a parabola through three places
+    distance = np.abs(beyond - zeta)
+    a, b, c = np.polyfit(distance, chi, 2)
     roots = np.roots([a, b, c])
-    # where it just misses zero, its lowest place
+    # a parabola that barely misses zero ends at its minimum
     inwards = roots.real[roots.real <= 0.0]
     if inwards.size:
         return float(zeta + outwards * inwards.max())
-    # open there, and more so further in: no way leads to a zone's end, and the contact is in a point
+    # open, and more so inwards: no zone end is reached, a contact in a point
     return float(-outwards * np.inf) if chi[0] > 0.0 and chi[-1] <= chi[0] else zeta
 
 
 def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array, facing: float) -> Array | None:
-    """χ at places ``zeta`` (k,) of the first beam, near ``facing`` of the other; None where that does not reach."""
+    """χ at places ``zeta`` (k,) of the first beam, opposite to ``facing``; None beyond the opposite surface."""
     z, pair = system.z, touch.pair
     beam = model.beams[pair.first]
     line = model.line(beam, z)
@@ -93,15 +94,15 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
     if isinstance(pair, Circle):
         n = x - centre(model, pair, z)[:, None]
         turning = np.sign(tangent[0] * n[1] - tangent[1] * n[0])
-        # where the edge lies along the circle, the beam leans against it by the angle whose sine is T' by arc length
+        # where the surface lies along the circle, the neutral line leans by the angle with sine T' by arc length
         return np.asarray(turning * own + _level(pair.edge, line, zeta) / (pair.radius + pair.edge.at(zeta)))
     if isinstance(pair, Face):
-        near = beside(model, pair, system.z, zeta)
+        near = edge_distances(model, pair, system.z, zeta)
         turning = np.sign(tangent[0] * near.normal[1] - tangent[1] * near.normal[0])
         return None if near.corner.any() else np.asarray(turning * own + near.bend)
     other = model.beams[pair.second]
     line_m = model.line(other, z)
-    faced = pair.faced(line, line_m, zeta, np.full(zeta.shape, facing))
+    faced = pair.places_facing(line, line_m, zeta, np.full(zeta.shape, facing))
     if not faced.found.all():
         return None
     zeta_m = faced.zeta_m
@@ -111,23 +112,23 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
     side = pair.sides(zeta, zeta_m, tangent_m[0] * (x - x_m)[1] - tangent_m[1] * (x - x_m)[0])
     levels = [np.ones_like(zeta), np.ones_like(zeta)]
     if pair.tapers is not None:
-        # as on a circle; the other's surface leans as well
-        both = ((pair.tapers.first, line, zeta), (pair.tapers.second, line_m, zeta_m))
-        levels = [_level(*one) for one in both]
+        # as on a circle, with the lean of the other surface in addition
+        surfaces = ((pair.tapers.first, line, zeta), (pair.tapers.second, line_m, zeta_m))
+        levels = [_level(*surface) for surface in surfaces]
     apart = pair.apart(zeta, zeta_m)
     lying = across * levels[0] / (levels[1] - side * apart * across)
-    if faced.fixed.any():  # round a corner of the surface
+    if faced.fixed.any():  # around a corner of the surface
         lying = np.where(faced.fixed, -side * levels[0] / apart, lying)
     return np.asarray(side * (along * own - lying))
 
 
 def _level(edge: Edge, line: NeutralLine, zeta: Array) -> Array:
-    """Cosine of the angle by which a surface leans from its neutral line: its sine is T' by arc length."""
+    """Cosine (k,) of the angle between surface and neutral line; the sine is T' by arc length."""
     return np.asarray(np.sqrt(1.0 - (edge.slope(zeta) / line.lengths[line.locate(zeta)[0]]) ** 2))
 
 
 def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Array:
-    """Curvature of the neutral line as it lies, (1 + c N)⁻¹ (κ⁰ + M/EI)."""
+    """Curvature (k,) of the deformed neutral line, (1 + c N)⁻¹ (κ⁰ + M/EI)."""
     elements = model.elements
     e = model.line(beam, system.z).locate(zeta)[0] + beam.elements.start
     undeformed = (elements.rotation[1, e] - elements.rotation[0, e]) / elements.length[e]

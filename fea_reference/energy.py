@@ -1,4 +1,4 @@
-"""The potential energy of a state, without units."""
+"""Dimensionless potential energy of a state."""
 
 from itertools import combinations
 
@@ -9,9 +9,9 @@ from fea_reference.system import System
 
 
 def potential_energy(model: Model, system: System, values: Array) -> float:
-    """Strain energy less the work of the dead loads; what drives put in is in the strain energy.
+    """Strain energy minus the work of dead loads; the work of drives is part of the strain energy.
 
-    What the penalties of contacts store is left out.
+    The energy of contact penalties is excluded.
     """
     z = system.z
     energy = float(system.elements.energy.sum())
@@ -31,6 +31,6 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
 
 
 def penalised_energy(model: Model, system: System, values: Array) -> float:
-    """The potential energy with what penalties store: what an equilibrium has least of."""
-    stored = sum(0.5 * float((one.stiffness * one.gap**2).sum()) for one in system.touches)
+    """Potential energy including the energy of penalties, minimal in an equilibrium."""
+    stored = sum(0.5 * float((contact.stiffness * contact.gap**2).sum()) for contact in system.touches)
     return potential_energy(model, system, values) + stored

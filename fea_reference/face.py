@@ -1,11 +1,11 @@
-"""Frictionless contact of a beam with a rigid edge on a body, by a penalty along the beam's neutral line.
+"""Frictionless penalty contact of a beam with a rigid edge on a body, integrated along the beam's neutral line.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-x, r    point of the neutral line; r = x − c − X, from where the body's reference centre is
-y       R(−φ) r, where the edge stands still
-d, n    distance of y from the edge and its gradient, turned with the body;  τ is n turned clockwise
+x, r    point of the neutral line; r = x − c − X, measured from the body's reference centre
+y       R(−φ) r, the point in the frame of the body
+d, n    distance of y from the edge and its gradient, rotated with the body;  τ is n turned clockwise
 b       second derivative of d along τ
 T, g    half of the beam's thickness at ζ, zero for a line; gap d − T
 ε       penalty stiffness per unit length of the beam
@@ -13,28 +13,29 @@ T, g    half of the beam's thickness at ζ, zero for a line; gap d − T
 k ×     a vector turned counter-clockwise
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc length.  With δu = δx − δX − δφ k × r, what the point
-moves against the body,
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc length. With the relative motion of the point against
+the body, δu = δx − δX − δφ k × r,
 
     δg = n·δu,     δ²g = n·δ²x − 2 δφ n·k × (δx − δX) − n·r δφ² + b (τ·δu)²,
 
-and by ζ alone g' = n·x' − T', g'' = n·x'' + b (τ·x')².  The integral runs over the exact intervals on which g < δ.
-Where n jumps, at a corner, intervals end, too: g is the same on both sides of such a place, so that the gradient
-has no part of it; as the place moves with the beam, the second derivative has −ε g (Δδg)²/Δg', Δ being what is before
-less what is behind.
+and by ζ alone g' = n·x' − T', g'' = n·x'' + b (τ·x')². The integral runs over the exact intervals with g < δ.
+Intervals also end where n jumps, at a corner. There g is continuous, so that the gradient has no additional term. The
+place moves with the beam, however, and adds −ε g (Δδg)²/Δg' to the second derivative, Δ being the value before minus
+the value behind.
 
-A corner that presses on a beam's side, or a beam's end that presses on the edge, sinks in by the root of its force over
-ε, on however few elements: there the penalty goes by the penetration that is asked, as it does between beams.  A thick
-beam's neutral line goes round a corner by an arc of half its thickness, which no element resolves either.
+Point contacts: a corner on a beam's side, or a beam's end on the edge, penetrates with the root of its force over ε,
+however few the elements. Its penalty follows from the requested penetration, as for pairs of beams. The neutral line
+of a thick beam rounds a corner along an arc of half the thickness, too short for the elements.
 
-A beam's end that a joint holds on the edge is there whatever happens: it counts for no gap.  Where it is pinned, a stop
-keeps its section from turning into the edge (:mod:`fea_reference.own_pins`).  With shear the line leans from a section
-that is held by γ, hence into the edge as far as 2γ/κ, where κ lifts it off.  All of the shear force would go from the
-joint over to a contact of γ/κ in width beside it, which is of the second order in the thickness: the arm of a force is
-nothing there, and the force is what no mesh tells.  What a pressure does within √(EI/κ_s GA) of a held section, half a
-thickness, that section hands on to the joint: beside an end on a straight edge, which axial forces do not press on,
-it is the joint's, and the edge presses on what is beyond.  Along a straight edge an even beam's moment is constant:
-what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by the stop's moment.
+An end jointed to the edge: the joint fixes the gap there, so that the place does not count. At a pinned end a stop
+keeps the section from turning into the edge (:mod:`fea_reference.own_pins`). With shear the neutral line leans from a
+held section by γ, into the edge over a length 2γ/κ, where κ lifts the beam off. A contact of width γ/κ beside the
+joint, of second order in the thickness, would take over the whole shear force of the joint: with a lever arm near
+zero, the distribution between both is indeterminate. Within √(EI/κ_s GA) of a held section, half a thickness, the
+section transmits any pressure to the joint. Beside an end on a straight edge, without pressure from axial forces,
+that length therefore belongs to the joint and the edge presses beyond. Along a straight edge the moment of a
+prismatic beam is constant: contact forces act at the ends of the zone, as a force at the lift-off and as the stop's
+moment at the pin.
 """
 
 from __future__ import annotations
@@ -48,34 +49,34 @@ from cprbm_scene.statement import EdgeContact, Scene
 from fea_reference import swept
 from fea_reference.edge import edge_of
 from fea_reference.element import layer
-from fea_reference.hermite import Around, Index, NeutralLine, along, plane, shapes, twice_along
+from fea_reference.hermite import Around, Index, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near, Outline
-from fea_reference.own_pins import held_on
+from fea_reference.own_pins import ends_on_edge
 from fea_reference.state import Complex, State, summed
-from fea_reference.swept import Beside, gone_over
-from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, together
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
+from fea_reference.swept import ClosestPlaces, swept_over
+from fea_reference.touch import THINNEST, Face, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, no_zones
 
-_SLENDER = 0.01  # of the longest beam: what stands for the thickness of a beam that touches as a line
-_LAYERS = 32.0  # of the first penalty, in a beam's length
-_RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
-# as on a circle: what thinner layers in a beam's length would leave is below what makes them hard to find
+_SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of a beam in contact as a line
+_LAYERS = 32.0  # layers per beam length, for the first penalty
+_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
+# as on a circle: the error of thinner layers per beam length is below their round-off at a clamp
 _THINNEST, _STANDARD = 800.0, 1e-4
-_REACH = 2.0  # elements, from a corner to where what happens there is looked for
+_REACH = 2.0  # elements: neighbourhood of a corner
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
 _AT_END = 1e-6  # elements
 _BLUNT = 0.5  # sine of half the angle of a tip on which loose penalties hold a beam
 _SHARPEST = 1e5
-_LOOKED = 4  # Gauss points, to see where a zone presses to
-_ALONG = 0.5  # of a way: what goes less than that across a beam goes along it
-_PARTS = 4  # of a way on which a beam must not have passed through
+_LOOKED = 4  # Gauss points to determine the direction of a zone's pressure
+_ALONG = 0.5  # of a motion: a smaller part across the beam counts as motion along the beam
+_PARTS = 4  # subdivision of an element for the crossing check
 
 
 def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
-    """The scene's contacts of a beam with an edge, ``penetration`` as in the settings."""
-    found = []
+    """The scene's contacts of a beam with an edge; ``penetration`` as in the settings."""
+    contacts = []
     thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
     bodies = [body.name for body in model.bodies]
@@ -89,11 +90,15 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
         edge = edge_of(beam.record, elements, units.length, thick=contact.thick)
         h = float(model.elements.length[beam.elements.start])
         width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
-        outline, own = held_on(scene, contact, units.origin + units.length * model.bodies[body].centre, units.length)
+        outline, own = ends_on_edge(
+            scene, contact, units.origin + units.length * model.bodies[body].centre, units.length
+        )
         joints = own if outline.straight else {}
         sides = (layer(model.elements, e) for e in (beam.elements.start, beam.elements.stop - 1))
-        begins, stops = (one if which in joints else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
-        found.append(
+        begins, stops = (
+            extent if which in joints else 0.0 for which, extent in zip(("start", "end"), sides, strict=True)
+        )
+        contacts.append(
             Face(
                 name,
                 first,
@@ -108,56 +113,58 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
 def sharpness(outline: Outline) -> float:
-    """How much stiffer the sides of the sharpest tip have to be, to hold a beam on that as those of a blunt one do.
+    """Factor by which the penalty of the sharpest tip has to exceed the penalty of a blunt tip.
 
-    What overlaps of a wedge goes with the cube of the sine of half its angle.
+    The overlap of a wedge goes with the cube of the sine of half its angle.
     """
     corners = outline.corners
-    before, behind = (one[:, corners.jutting] for one in corners.normals)
-    # half of the angle between both sides, whose normals turn by all the rest
+    before, behind = (normals[:, corners.convex] for normals in corners.normals)
+    # half of the angle between both sides; their normals turn by the supplement
     sine = np.sqrt(np.maximum(0.5 * (1.0 + (before * behind).sum(axis=0)), 0.0))
     return float(np.clip((_BLUNT / max(float(sine.min(initial=1.0)), 1e-9)) ** 3, 1.0, _SHARPEST))
 
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
-    """Where the beam overlaps the face in state ``z``."""
-    return model.leads.found(z, (face, 0.0), lambda: _Seen(model, face, z).zones())[0]
+    """Zones of overlap of the beam with the edge in state ``z``."""
+    return model.leads.recall(z, (face, 0.0), lambda: _View(model, face, z).zones())[0]
 
 
-def passed(model: Model, face: Face, before: State, after: State) -> bool:
-    """Whether a beam that goes straight from one state to another has gone through the edge.
+def passes_through(model: Model, face: Face, before: State, after: State) -> bool:
+    """True if the beam passed through the edge on the straight way between two states.
 
-    A place of it that comes from the free side and goes through the edge must be seen in it afterwards.
+    A point of the beam that crosses from the free side must overlap the edge afterwards.
     """
     chain = face.outline.chain
-    seen = [_Seen(model, face, z) for z in (before, after)]
-    even = np.arange(_PARTS * seen[0].line.n + 1) / _PARTS
-    old, new = (one.place(even) for one in seen)
-    found = face.outline.near(new)
-    inside = (found.distance < 0.0) & (found.distance > -face.outline.extent)
+    views = [_View(model, face, z) for z in (before, after)]
+    even = np.arange(_PARTS * views[0].line.n + 1) / _PARTS
+    old, new = (view.place(even) for view in views)
+    near = face.outline.near(new)
+    inside = (near.distance < 0.0) & (near.distance > -face.outline.extent)
     apart = ~np.isin(even, face.own)
     for a, b in zip(chain.T[:-1], chain.T[1:], strict=True):
         along = b - a
         old_side = along[0] * (old[1] - a[1]) - along[1] * (old[0] - a[0])
         new_side = along[0] * (new[1] - a[1]) - along[1] * (new[0] - a[0])
-        way = new - old
-        from_a, from_b = (way[0] * (at[1] - old[1]) - way[1] * (at[0] - old[0]) for at in (a, b))
+        path = new - old
+        from_a, from_b = (path[0] * (at[1] - old[1]) - path[1] * (at[0] - old[0]) for at in (a, b))
         through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0) & apart & ~inside
-        if through.any() and not _slid_along(seen[0], seen[1], even[through], way[:, through]).all():
+        if through.any() and not _slid_along(views[0], views[1], even[through], path[:, through]).all():
             return True
-    return _gone_over_a_tip(face, *seen)
+    return _swept_over_tip(face, *views)
 
 
-def _slid_along(before: _Seen, after: _Seen, zeta: Array, way: Array) -> Flags:
-    """Whether places ``zeta`` (k,) of a beam have gone along it, on ways (2, k) in the body's frame, over a tip on
-    which it presses before and after: sunk in as far as that, they go in on one side and come out of the other.
+def _slid_along(before: _View, after: _View, zeta: Array, way: Array) -> Flags:
+    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip.
+
+    ``way`` (2, k) are the paths of the places in the body frame. A tip that presses before and after has penetrated
+    the beam: neighbouring places enter on one side and leave on the other.
     """
-    tips = [one.tips() for one in (before, after)]
-    there = [swept.beside(one.line, at) for one, (at, _) in zip((before, after), tips, strict=True)]
+    tips = [view.tips() for view in (before, after)]
+    there = [swept.closest_places(view.line, at) for view, (at, _) in zip((before, after), tips, strict=True)]
     pressed = there[0].found & before.pressed_at(there[0], tips[0][1])
     pressed &= there[1].found & after.pressed_at(there[1], tips[1][1])
     low, high = (choose(there[0].zeta, there[1].zeta) for choose in (np.minimum, np.maximum))
@@ -167,58 +174,58 @@ def _slid_along(before: _Seen, after: _Seen, zeta: Array, way: Array) -> Flags:
     return np.asarray((near & (across < _ALONG * np.abs(ahead)[:, None])).any(axis=1))
 
 
-def _gone_over_a_tip(face: Face, before: _Seen, after: _Seen) -> bool:
-    """Whether a beam has gone over a tip of the edge, between two of its samples, and does not press on it any more."""
-    tips = [one.tips() for one in (before, after)]
+def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
+    """True if the beam passed over a tip between two samples and does not press on the tip any more."""
+    tips = [view.tips() for view in (before, after)]
     if tips[0][0].size == 0:
         return False
-    first, last, over = gone_over((before.line, tips[0][0]), (after.line, tips[1][0]))
+    first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
     for end in face.own:
         over &= np.abs(first.zeta - end) > 1.0
-    over &= last.seen_along(tips[1][1]) < 0.0
+    over &= last.distance_along(tips[1][1]) < 0.0
     if not over.any():
         return False
     over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1])
     return bool((over & ~after.pressed_at(last, tips[1][1])).any())
 
 
-def cut(model: Model, face: Face, z: State) -> float:
-    """How deep tips of the edge are in the beam that presses on them; what is thin is cut by much less overlap."""
-    seen = _Seen(model, face, z)
-    tips, out = seen.tips()
+def tip_depth(model: Model, face: Face, z: State) -> float:
+    """Largest depth of a pressing tip in the beam; on a slender tip a small overlap means a deep cut."""
+    view = _View(model, face, z)
+    tips, out = view.tips()
     if tips.size == 0:
         return 0.0
-    there = swept.beside(seen.line, tips)
-    depth = face.edge.at(there.zeta) - there.seen_along(out)
+    there = swept.closest_places(view.line, tips)
+    depth = face.edge.at(there.zeta) - there.distance_along(out)
     deep = there.found & (depth > 0.0)
     for end in face.own:
         deep &= np.abs(there.zeta - end) > 1.0
     if not deep.any():
         return 0.0
-    return float(depth[deep & seen.pressed_at(there, out)].max(initial=0.0))
+    return float(depth[deep & view.pressed_at(there, out)].max(initial=0.0))
 
 
-def beside(model: Model, face: Face, z: State, zeta: Array) -> Near:
-    """What is nearest to places ``zeta`` (k,) of the beam, normals as they point now."""
-    seen = _Seen(model, face, z)
-    near = face.outline.near(seen.place(zeta))
-    return Near(near.distance, seen.turned(near.normal), near.bend, near.corner)
+def edge_distances(model: Model, face: Face, z: State, zeta: Array) -> Near:
+    """Distance data of the edge at places ``zeta`` (k,) of the beam, with current normals."""
+    view = _View(model, face, z)
+    near = face.outline.near(view.place(zeta))
+    return Near(near.distance, view.turned(near.normal), near.bend, near.corner)
 
 
 def corners_of(model: Model, face: Face, z: State) -> Complex:
-    """Where the corners of the edge are in state ``z``, (c,) as complex numbers."""
+    """Positions (c,) of the edge's corners in state ``z``, as complex numbers."""
     body, points = model.bodies[face.body], face.outline.corners.points
     X, Y, phi = model.body_state(body, z)
     return np.asarray(complex(*body.centre) + complex(X, Y) + np.exp(1j * phi) * (points[0] + 1j * points[1]))
 
 
 def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+    """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[face.first], model.bodies[face.body]
-    seen = _Seen(model, face, z)
-    ahead, kinks = model.leads.found(z, (face, penalty.lead), lambda: seen.zones(penalty.lead))
+    view = _View(model, face, z)
+    ahead, kinks = model.leads.recall(z, (face, penalty.lead), lambda: view.zones(penalty.lead))
     zones = replace(ahead, least=ahead.least + penalty.lead)
-    line = seen.line
+    line = view.line
 
     points, weights = gauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
@@ -227,35 +234,35 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
     x = line.at(zeta)[0]
-    near = face.outline.near(seen.place(zeta))
-    n = seen.turned(near.normal)
+    near = face.outline.near(view.place(zeta))
+    n = view.turned(near.normal)
     tau = np.array([n[1], -n[0]])
-    r = x - seen.centre[:, None]
-    # what a stiff penalty makes a force of; to find where it begins the rounded places will do
-    g = face.outline.kept(*seen.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
+    r = x - view.centre[:, None]
+    # the contact force needs the unrounded gap; for the interval ends rounded points suffice
+    g = face.outline.exact_distance(*view.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
 
     H = shapes(xi)
     moves = body.dofs is not None
-    g_q = seen.by(n, H, e, r, moves=moves)
-    p = seen.by(tau, H, e, r, moves=moves)
+    g_q = view.by(n, H, e, r, moves=moves)
+    p = view.by(tau, H, e, r, moves=moves)
     g_qq = near.bend * p[:, None] * p[None, :]
-    g_qq[:7, :7] += twice_along(n, H, line, e)
+    g_qq[:7, :7] += projected_hessian(n, H, line, e)
     if moves:
         across = np.array([-n[1], n[0]])  # across·w = −n·k × w
-        turning = np.concatenate([along(across, H, line, e), -across])
+        turning = np.concatenate([projected_gradient(across, H, line, e), -across])
         g_qq[:9, 9] += turning
         g_qq[9, :9] += turning
         g_qq[9, 9] -= (n * r).sum(axis=0)
 
     ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
-    bent = _bent(seen, zones, kinks, penalty, quadrature, moves=moves)
-    alike = together(quadrature, e)
+    bent = _corner_terms(view, zones, kinks, penalty, quadrature, moves=moves)
+    points_per_place = count_points_per_place(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
         pair=face,
         zones=zones,
-        chain=model.chain(((beam, e[::alike]),), z, body.dofs),
-        alike=alike,
+        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
+        points_per_place=points_per_place,
         stiffness=weight,
         gap=g,
         gap_by=g_q,
@@ -265,44 +272,44 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         x=x,
         x_m=x - near.distance * n,
         normal=n,
-        bent=bent,
+        extra_hessian=bent,
         sharp=bool(ends.any()) or bent is not None or bool(near.corner.any()),
     )
 
 
-def _bent(
-    seen: _Seen, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
+def _corner_terms(
+    view: _View, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
 ) -> Array | None:
-    """What the moving places at corners add to the second derivatives, (m, m, k); None where there are none."""
+    """Second-derivative terms (m, m, k) of the moving places at corners; None without corners."""
     bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
     bends = [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
     if not bends:
         return None
     size = 10 if moves else 7
-    more = np.zeros((size, size, len(zones.intervals) * quadrature))
+    terms = np.zeros((size, size, len(zones.intervals) * quadrature))
     for i, end in bends:
-        # of the element in which the interval lies, for what follows is the same at a node
-        e = np.array([min(int(zones.intervals[i].mean()), seen.line.n - 1)])
+        # the element that contains the interval: at a node the next interval has the same term
+        e = np.array([min(int(zones.intervals[i].mean()), view.line.n - 1)])
         xi = np.array([end]) - e
         corner = kinks[end]
-        normals = [side[:, corner] for side in seen.face.outline.corners.normals]
-        x, x1, _ = seen.line.at(np.array([end]))
-        steeper = [float((seen.turned(n[:, None])[:, 0] * x1[:, 0]).sum()) for n in normals]
-        # where the corner juts out, d is the larger of both distances behind it, else the smaller
-        first = int(np.argmin(steeper) if seen.face.outline.corners.jutting[corner] else np.argmax(steeper))
+        normals = [side[:, corner] for side in view.face.outline.corners.normals]
+        x, x1, _ = view.line.at(np.array([end]))
+        steeper = [float((view.turned(n[:, None])[:, 0] * x1[:, 0]).sum()) for n in normals]
+        # at a convex corner d is the larger of both distances behind the corner, else the smaller
+        first = int(np.argmin(steeper) if view.face.outline.corners.convex[corner] else np.argmax(steeper))
         before, behind = normals[first], normals[1 - first]
-        difference = seen.turned((before - behind)[:, None])
+        difference = view.turned((before - behind)[:, None])
         slope = steeper[first] - steeper[1 - first]
-        gap = float(seen.gap(np.array([end]))[0]) - penalty.lead
-        by = seen.by(difference, shapes(xi), e, x - seen.centre[:, None], moves=moves)[:, 0]
-        more[:, :, (i + 1) * quadrature - 1] = (
-            -penalty.stiffness * gap / slope * float(seen.line.lengths[e[0]]) * np.outer(by, by)
+        gap = float(view.gap(np.array([end]))[0]) - penalty.lead
+        by = view.by(difference, shapes(xi), e, x - view.centre[:, None], moves=moves)[:, 0]
+        terms[:, :, (i + 1) * quadrature - 1] = (
+            -penalty.stiffness * gap / slope * float(view.line.lengths[e[0]]) * np.outer(by, by)
         )
-    return more
+    return terms
 
 
-class _Seen:
-    """A beam as it lies before a face: places in the frame of the face's body."""
+class _View:
+    """A beam in front of an edge: places in the frame of the edge's body."""
 
     def __init__(self, model: Model, face: Face, z: State) -> None:
         self.face = face
@@ -314,44 +321,44 @@ class _Seen:
         q, error = summed(self.line.nodes, -complex(*self.centre) * np.ones_like(self.line.nodes))
         self.back = complex(np.cos(self.phi), -np.sin(self.phi))
         q, error = summed(q, error + self.line.rests - complex(*rest))
-        self.nodes, self.rests = self.back * q, self.back * error  # of a body that does not turn with all digits
+        self.nodes, self.rests = self.back * q, self.back * error  # all digits kept for a body without rotation
 
     def place(self, zeta: Array) -> Array:
-        """y (2, k)."""
-        return plane(self._place(self.line.around(zeta)))
+        """Points y (2, k)."""
+        return as_plane(self._place(self.line.around(zeta)))
 
     def place_and_rest(self, zeta: Array) -> tuple[Array, Array]:
-        """y (2, k), and what its rounding left."""
+        """Points y (2, k) and their round-off."""
         there = self.line.around(zeta)
         value, error = summed(self.nodes[there.element], self.back * there.way)
-        return plane(value), plane(error + self.rests[there.element])
+        return as_plane(value), as_plane(error + self.rests[there.element])
 
     def _place(self, there: Around) -> Complex:
-        """y as a complex number, (k,)."""
+        """Points y (k,) as complex numbers."""
         return np.asarray(self.nodes[there.element] + self.back * there.way)
 
     def turned(self, vectors: Array) -> Array:
-        """Vectors (2, k) of the body's frame as they point now."""
+        """Vectors (2, k) of the body's frame in current orientation."""
         return turned(vectors, self.phi)
 
     def gap(self, zeta: Array) -> Array:
-        """g (k,)."""
+        """Gap g (k,)."""
         return np.asarray(self.face.outline.near(self.place(zeta)).distance - self.face.edge.at(zeta))
 
     def by(self, v: Array, H: Array, e: Index, r: Array, *, moves: bool) -> Array:
-        """v·δu by the line's element and by the body's three if it ``moves``, (m, k)."""
-        own = along(v, H, self.line, e)
+        """Derivatives of v·δu (m, k) by the line's element, and by the body's three unknowns if it ``moves``."""
+        own = projected_gradient(v, H, self.line, e)
         if not moves:
             return own
         return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
 
     def tips(self) -> tuple[Complex, Complex]:
-        """Where tips are now, and what may press there is directed on the mean, (t,) each, as complex numbers."""
-        points, out = (one[0] + 1j * one[1] for one in self.face.outline.tips)
+        """Current positions of tips and mean directions of their contact force, (t,) both, as complex numbers."""
+        points, out = (vectors[0] + 1j * vectors[1] for vectors in self.face.outline.tips)
         return complex(*self.centre) + self.back.conjugate() * points, self.back.conjugate() * out
 
-    def pressed_at(self, there: Beside, out: Complex) -> Flags:
-        """Whether the beam is pressed away from tips (t,), ``out`` as they point, within an element beside them."""
+    def pressed_at(self, there: ClosestPlaces, out: Complex) -> Flags:
+        """True if the contact pushes the beam away from tips (t,), of current direction ``out``, within an element."""
         zones, _ = self.zones()
         pressed = np.zeros(out.size, dtype=bool)
         if not len(zones.intervals):
@@ -363,13 +370,14 @@ class _Seen:
         overlap = np.maximum(self.face.edge.at(zeta) - near.distance, 0.0) * (width * weights).ravel()
         n = self.turned(near.normal)
         pushes = overlap * (n[0] + 1j * n[1])
-        for i, (at, normal) in enumerate(zip(there.zeta, there.along(out), strict=True)):
+        for i, (at, normal) in enumerate(zip(there.zeta, there.normal_along(out), strict=True)):
             pressed[i] = (normal.conjugate() * pushes[np.abs(zeta - at) < 1.0].sum()).real > 0.0
         return pressed
 
     def zones(self, lead: float = 0.0) -> tuple[Zones, dict[float, np.int64]]:
-        """All intervals on which the gap is less than a ``lead``, which their least gap leaves out, and the corners of
-        the places between them where n jumps.
+        """Intervals with a gap below ``lead``, and the corners of the interval ends where n jumps.
+
+        The least gap of the zones is reduced by ``lead``.
         """
         face, line = self.face, self.line
 
@@ -386,11 +394,15 @@ class _Seen:
         there = at(zeta, np.zeros_like(zeta))
         own = tuple(end for end in face.own if end in face.within)
         for end in own:
-            # where it is zero by a joint, what is nearest is a matter of round-off: it goes on as beside it
+            # a joint makes the gap zero there, with a random nearest point: continue the values beside
             here, beside = (0, 1) if end == 0.0 else (-1, -2)
-            there.g[here], there.slope[here], there.curvature[here] = 0.0, there.slope[beside], there.curvature[beside]
+            there.g[here], there.slope[here], there.curvature[here] = (
+                0.0,
+                there.slope[beside],
+                there.curvature[beside],
+            )
         if not there.found.any():
-            return none(float(np.abs(there.g).min())), {}
+            return no_zones(float(np.abs(there.g).min())), {}
         neighbours = there.found[:-1] & there.found[1:]
         if not there.found.all():
             keep = there.found
@@ -403,8 +415,8 @@ class _Seen:
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face
         there = self.line.around(zeta)
-        near = face.outline.near(plane(self._place(there)))
-        # of a product with n turned back, n·v is real, and −τ·v imaginary
+        near = face.outline.near(as_plane(self._place(there)))
+        # of a product with the rotated conjugate normal, the real part is n·v and the imaginary part −τ·v
         back = (near.normal[0] - 1j * near.normal[1]) * self.back
         ahead = back * there.ahead
         return Gap(
@@ -416,7 +428,7 @@ class _Seen:
         )
 
     def _borders(self, even: Array) -> tuple[Array, dict[float, np.int64]]:
-        """Places at which n or b jumps, and the corners of those where n does."""
+        """Places where n or b jumps, and the corners of the places where n jumps."""
         corners = self.face.outline.corners
         if corners.points.shape[1] == 0:
             return np.empty(0), {}
@@ -428,16 +440,16 @@ class _Seen:
             return np.empty(0), {}
         start = even[apart[near].argmin(axis=1)]
         P = corners.points[:, near]
-        across = (corners.halving, *corners.tangents)
-        t = np.concatenate([one[:, near] for one in across], axis=1)
+        across = (corners.bisectors, *corners.tangents)
+        t = np.concatenate([tangents[:, near] for tangents in across], axis=1)
         every, crosses = self._crossing(np.tile(P, len(across)), t, np.tile(start, len(across)))
         zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance
-        jumps = through & np.where(corners.jutting[near], d < 0.0, d > 0.0)
+        jumps = through & np.where(corners.convex[near], d < 0.0, d > 0.0)
         return every[crosses], dict(zip(zeta[jumps].tolist(), near[jumps], strict=True))
 
     def _crossing(self, P: Array, t: Array, start: Array) -> tuple[Array, Array]:
-        """Places (c,) where the line crosses those through P across t (2, c), sought from ``start`` (c,)."""
+        """Places (c,) where the line crosses the normals at P to t (2, c), starting at ``start`` (c,)."""
         zeta, step = start.copy(), np.zeros_like(start)
         at, along_t = P[0] + 1j * P[1], t[0] - 1j * t[1]
         for _ in range(_CROSSING_STEPS):

@@ -1,31 +1,31 @@
-"""From which place of a beam's neutral line its surface is nearest to a point.
+"""Closest point of a beam's surface to a point: the place of the neutral line that a point faces.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 x, x_m  a point, and the place of the beam's neutral line that it faces, at ζ_m
-T_m     half of the beam's thickness at ζ_m, straight between its knots; T_m' by ζ_m
-D, u    distance of x from x_m, negative if it is on the other side, and the unit vector: x = x_m + D u
+T_m     half of the beam's thickness at ζ_m, linear between knots; T_m' by ζ_m
+D, u    distance of x from x_m, negative on the other side, and the unit vector: x = x_m + D u
 u₀, d   side·u and side·D, so that u₀ points to the left of the beam
 w       u₀ turned clockwise
 α       lean of u₀ from the normal: side·α counter-clockwise, sin α = T_m'/|x_m'|
 c, a    w·x_m' and u₀·x_m'';  Z = c² − d a
 ======  =====================================================================================
 
-A beam fills the circles of radius T about its neutral line, for all places on it.  Its surface is their envelope, and
-the distance from it, x being nearest to the circle about x_m, is the least value along the beam of
+A beam is the union of the circles of radius T about its neutral line, and its surface is their envelope. The distance
+of x from the surface is the minimum along the beam of
 
     D − T_m,     where  u·x_m' + T_m' = 0:   u leans from the normal by α.
 
-A beam of one thickness, and a line, has α = 0: then x_m is the closest point and w the tangent.  As x moves, ζ_m moves
-by c (w·δx)/Z.  As D − T_m is stationary, what moves ζ_m adds nothing to its derivative, so that a force along u, on the
-line through both places, is all there is.
+For constant thickness, and for a line, α = 0; x_m is the closest point and w the tangent. A motion of x moves ζ_m by
+c (w·δx)/Z. D − T_m is stationary, so that the motion of ζ_m adds nothing to its derivative. The contact force acts
+along u, on the line through both places, without a moment.
 
-What is beyond an end of the beam sees the circle about that: there ζ_m stays, and u points to x from there.
+A point beyond an end of the beam faces the circle about the end: ζ_m is fixed, and u points from the end to x.
 
-Where T_m' falls at a knot, the surface has a corner that juts out, an arc about the knot: ζ_m stays there while u
-turns from one lean to the other.  Where it rises, the corner goes in, and the mean of both leans parts the places
-before it from those behind; on that line either circle is as near, but for the third order of T_m'.
+Where T_m' decreases at a knot, the surface has a convex corner, an arc about the knot: ζ_m stays there while u turns
+from the lean before to the lean behind. Where T_m' increases, the corner is concave. Then the mean of both leans
+separates the places before from the places behind; both circles are equally near there, up to third order in T_m'.
 """
 
 from __future__ import annotations
@@ -42,29 +42,29 @@ from fea_reference.projection import closest
 from fea_reference.state import Complex
 
 _ITERATIONS = 40
-_ARRIVED = 1e-8  # elements: the step that was just made leaves an error of the order of its square
-_STEEPEST = 0.99  # sine of a lean
-_NEAR = 2.0  # times the way along the beam that the largest lean makes: knots farther away lie where they seem to
+_ARRIVED = 1e-8  # elements: last Newton step, with an error of the order of its square
+_STEEPEST = 0.99  # largest sine of a lean
+_NEAR = 2.0  # times the motion along the beam from the largest lean: knots farther away keep their sign of distance
 _NOTHING = 1e-300
 
 
 @dataclass(frozen=True)
 class Tapers:
-    """T of two beams of which one or both have a varying thickness; of a beam and itself twice the same."""
+    """Half thickness T of two beams with varying thickness; for self-contact the same edge twice."""
 
     first: Edge
     second: Edge
 
     def thinner(self, zeta: Array, zeta_m: Array) -> Array:
-        """How much nearer than at their thickest the neutral lines are when they touch at places (k,)."""
+        """Reduction (k,) of the distance of neutral lines in contact, against the thickest sections."""
         return (self.first.farthest - self.first.at(zeta)) + (self.second.farthest - self.second.at(zeta_m))
 
 
 @dataclass(frozen=True, slots=True)
 class Facing:
-    """Of k points: ζ_m, whether it was ``found``, what is ``across`` there, w and c.
+    """Places faced by k points: ζ_m, ``found``, the line ``across`` at ζ_m, w and c.
 
-    ``fixed`` are those at a knot or an end.
+    ``fixed`` marks places at a knot or an end.
     """
 
     zeta_m: Array
@@ -77,7 +77,7 @@ class Facing:
 
 @dataclass(frozen=True, slots=True)
 class Borders:
-    """Rays on which the points lie that face a place of a beam where its curvature or its lean jumps.
+    """Rays of points that face a place with a jump of curvature or lean.
 
     Places ``zeta`` (b,), their ``points`` x + i y (b,), and w (b,).
     """
@@ -87,7 +87,7 @@ class Borders:
     w: Complex
 
     def among(self, nodes: Ints) -> Borders:
-        """Those at ``nodes`` (k,) of the beam and beside them."""
+        """Rays at ``nodes`` (k,) of the beam and at adjacent places."""
         if nodes.size == int(self.zeta.max()) + 1:
             return self
         wanted = np.zeros(int(self.zeta.max()) + 2, dtype=bool)
@@ -106,10 +106,10 @@ def facing(
     *,
     ended: bool,
 ) -> Facing:
-    """What points x + i y (k,) face, sought from ``guess`` (k,); an ``edge`` tells how the beam's thickness varies.
+    """Places faced by points x + i y (k,), with initial guesses ``guess`` (k,) and the thickness variation ``edge``.
 
-    ``sides`` are the sides (k,) on which they lie, of the closest places ζ_m (k,) and d (k,) there.  Points beyond an
-    end face nothing, or the end of a beam that is ``ended`` by circles.
+    ``sides`` gives the sides (k,) from the closest places ζ_m (k,) and d (k,). Points beyond an end face nothing, or
+    the end of a beam ``ended`` by circles.
     """
     faced = _between_ends(second, edge, points, guess, sides)
     return _with_ends(second, points, faced, sides) if ended else faced
@@ -118,7 +118,7 @@ def facing(
 def _between_ends(
     second: NeutralLine, edge: Edge | None, points: Complex, guess: Array, sides: Callable[[Array, Array], Array]
 ) -> Facing:
-    """The same of a beam that nothing beyond its ends faces."""
+    """Places between the ends of the beam; points beyond an end face nothing."""
     zeta, found, across = closest(second, points, guess)
     J = np.abs(across.ahead)
     w = across.ahead / J
@@ -126,11 +126,11 @@ def _between_ends(
     if edge is None or not edge.varies or not zeta.size:
         return foot
     d = ((1j * w).conj() * (points - second.nodes[across.element] - across.way)).real
-    return _leaning(second, edge, points, foot, d, sides(zeta, d))
+    return _with_lean(second, edge, points, foot, d, sides(zeta, d))
 
 
 def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array]) -> Facing:
-    """The same where points (k,) beyond an end face that."""
+    """Places with the ends of the beam included."""
     at_end = ~faced.found & ((faced.zeta_m == 0.0) | (faced.zeta_m == second.n))
     if not at_end.any():
         return faced
@@ -150,14 +150,14 @@ def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Calla
 
 
 def lean(ahead: Complex, slope: Array, side: Array | float) -> Complex:
-    """w (k,) where x_m' is ``ahead`` (k,) and T_m' the ``slope`` (k,)."""
+    """w (k,) for x_m' = ``ahead`` (k,) and T_m' = ``slope`` (k,)."""
     J = np.abs(ahead)
     sine = np.clip(slope / J, -_STEEPEST, _STEEPEST)
     return np.asarray(ahead / J * (np.sqrt(1.0 - sine**2) + 1j * side * sine))
 
 
 def borders(second: NeutralLine, edge: Edge | None, side: float) -> Borders:
-    """Of the nodes of a beam, and of the corners of its ``edge``, seen from a ``side``."""
+    """Rays at the nodes of a beam and the corners of its ``edge``, on a ``side``."""
     nodes = np.arange(second.n + 1.0)
     if edge is None or not edge.varies:
         return Borders(nodes, second.nodes, second.aheads)
@@ -173,14 +173,14 @@ def borders(second: NeutralLine, edge: Edge | None, side: float) -> Borders:
 
 
 def _rays(ahead: Complex, before: Array, behind: Array, side: Array | float) -> tuple[Complex, Complex, Complex]:
-    """w of the leans before and behind corners, and of their mean."""
+    """w for the leans before and behind corners, and for their mean."""
     first, last = lean(ahead, before, side), lean(ahead, behind, side)
     middle = first + last
     return first, last, middle / np.abs(middle)
 
 
-def _leaning(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> Facing:
-    """What points (k,) face, whose closest points are at their ``foot``, ``d`` away on a ``side`` (k,)."""
+def _with_lean(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> Facing:
+    """Places faced by points (k,) with closest places ``foot``, at distance ``d`` on a ``side`` (k,)."""
     slope, corner = _piece(second, edge, points, foot, d, side)
     zeta, done = foot.zeta_m, False
     for iteration in range(_ITERATIONS):
@@ -192,7 +192,7 @@ def _leaning(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: 
         turned = c - (across * there.bent).real * (across * r).real / c
         step = np.clip(f / np.where(turned > 0.1 * c, turned, c), -1.0, 1.0)
         if iteration > _ITERATIONS // 4:
-            step *= 0.5  # as for closest points
+            step *= 0.5  # as in the closest-point projection
         moved = np.clip(zeta + step, 0.0, float(second.n))
         done = bool(np.abs(moved - zeta).max(initial=0.0) < _ARRIVED)
         zeta = moved
@@ -213,7 +213,7 @@ def _leaning(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: 
 
 
 def _piece(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> tuple[Array, Ints]:
-    """T_m' (k,) where the points face the surface between corners, and the corner (k,) that they face, or −1."""
+    """T_m' (k,) at the faced places, and the number of the faced corner (k,), or −1."""
     corners, before, behind = edge.corners
     if not corners.size:
         return edge.slope(foot.zeta_m), np.full(foot.zeta_m.shape, -1)

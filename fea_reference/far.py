@@ -1,10 +1,10 @@
-"""How far apart what may touch is at least, told from a few nodes; what is far need not be looked at.
+"""Broad phase of contact search: a lower bound of the gap from bounding discs of a few nodes.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-c, r    centre and radius of a disc about a run of nodes and the elements up to the next one
-d       signed distance from an edge, which changes by no more than a place moves against its body
+c, r    centre and radius of a disc about consecutive nodes and their elements
+d       signed distance from an edge, Lipschitz with constant one in the body's frame
 g       least gap: g ≥ |c − o| − R − T − r, d(c) − T − r or |c − c_m| − T − r − r_m
 ======  =====================================================================================
 """
@@ -17,33 +17,33 @@ from fea_reference.model import BodyPart, Model
 from fea_reference.state import Complex, State
 from fea_reference.touch import Circle, Contact, Face, Pair, Rigid
 
-FAR = 0.1  # of the longest beam: a gap at which nothing is near
-_RUNS = 8  # of a beam's nodes
+FAR = 0.1  # lengths of the longest beam: gap without any contact
+_RUNS = 8  # discs per beam
 
 
-def least_apart(model: Model, what: Contact, z: State) -> float:
-    """A lower bound of the gap in state ``z``; of a beam and itself none is known."""
-    c, r = _discs(model, what.first, z)
-    match what:
+def gap_lower_bound(model: Model, pair: Contact, z: State) -> float:
+    """A lower bound of the gap in state ``z``; −∞ for self-contact."""
+    c, r = _discs(model, pair.first, z)
+    match pair:
         case Pair(roles=None):
-            c_m, r_m = _discs(model, what.second, z)
-            return float((np.abs(c[:, None] - c_m) - r[:, None] - r_m).min()) - what.distance
+            c_m, r_m = _discs(model, pair.second, z)
+            return float((np.abs(c[:, None] - c_m) - r[:, None] - r_m).min()) - pair.distance
         case Pair():
             return -np.inf
         case Circle():
-            x, y = model.carried(model.bodies[what.body], np.array(what.arm), z)
-            return float((np.abs(c - complex(x, y)) - r).min()) - what.radius - what.edge.farthest
+            x, y = model.carried(model.bodies[pair.body], np.array(pair.arm), z)
+            return float((np.abs(c - complex(x, y)) - r).min()) - pair.radius - pair.edge.farthest
         case Face():
-            r = r + what.edge.farthest
-            y = _in_frame(model, model.bodies[what.body], c, z)
-            y_0, d_0 = model.distances.found(model.start, what, lambda: _distances(model, what, model.start))
+            r = r + pair.edge.farthest
+            y = _in_frame(model, model.bodies[pair.body], c, z)
+            y_0, d_0 = model.distances.recall(model.start, pair, lambda: _distances(model, pair, model.start))
             apart = float((d_0 - np.abs(y - y_0) - r).min())
-            return apart if apart > FAR else float((_distance(what, y) - r).min())
+            return apart if apart > FAR else float((_distance(pair, y) - r).min())
 
 
-def kept_apart(model: Model, what: Rigid, gaps: tuple[float, float], before: State, after: State) -> bool:
-    """Whether a beam with these ``gaps`` in two states cannot have touched on the straight way between them."""
-    beam, body = model.beams[what.first], model.bodies[what.body]
+def cannot_touch(model: Model, pair: Rigid, gaps: tuple[float, float], before: State, after: State) -> bool:
+    """True if a beam with these ``gaps`` in two states cannot have touched on the straight way in between."""
+    beam, body = model.beams[pair.first], model.bodies[pair.body]
     dofs = model.node_dofs[:2, beam.nodes]
     moved = float(np.hypot(*(after.values[dofs] - before.values[dofs])).max())
     line = model.line(beam, before)
@@ -55,20 +55,20 @@ def kept_apart(model: Model, what: Rigid, gaps: tuple[float, float], before: Sta
 
 
 def _distances(model: Model, face: Face, z: State) -> tuple[Complex, Array]:
-    """Where the discs' centres are as the edge's body sees them, and d there, (k,) each."""
+    """Disc centres (k,) in the frame of the edge's body, and d (k,) there."""
     y = _in_frame(model, model.bodies[face.body], _discs(model, face.first, z)[0], z)
     return y, _distance(face, y)
 
 
 def _distance(face: Face, y: Complex) -> Array:
-    """d of places x + i y (k,) as the edge's body sees them."""
+    """d (k,) of points x + i y (k,) in the frame of the edge's body."""
     return face.outline.near(np.array([y.real, y.imag])).distance
 
 
 def _discs(model: Model, beam: int, z: State) -> tuple[Complex, Array]:
-    """c (k,) as x + i y and r (k,) of a beam, known by its number."""
+    """c (k,) as x + i y and r (k,) of beam number ``beam``."""
     part = model.beams[beam]
-    return model.discs.found(z, part.name, lambda: _discs_of(model.line(part, z)))
+    return model.discs.recall(z, part.name, lambda: _discs_of(model.line(part, z)))
 
 
 def _discs_of(line: NeutralLine) -> tuple[Complex, Array]:
@@ -80,7 +80,7 @@ def _discs_of(line: NeutralLine) -> tuple[Complex, Array]:
 
 
 def _in_frame(model: Model, body: BodyPart, places: Complex, z: State) -> Complex:
-    """Places x + i y (k,) as a body sees them."""
+    """Points x + i y (k,) in the frame of a body."""
     X, Y, phi = model.body_state(body, z)
     y = places - complex(body.centre[0] + X, body.centre[1] + Y)
     return y if body.dofs is None else y * complex(np.cos(phi), -np.sin(phi))

@@ -1,26 +1,27 @@
-"""Where a branch of minima ends, and why.
+"""Path following to the critical point of a branch of minima, and the type of instability.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-μ, φ    smallest curvature of the potential energy on the feasible directions, and its motions
-s, τ    arc length of the branch, and dλ/ds by it
+μ, φ    smallest curvature of the potential energy on the feasible directions, and its mode
+s, τ    arc length of the branch, and dλ/ds
 P       force of a contact
 ======  =====================================================================================
 
-The branch is followed by its arc length to where μ(s) changes its sign, and the zero is found between.  It is a fold
-if λ turns back there, and the branch goes there along φ; otherwise it is a bifurcation.
+The branch is followed by arc length until μ(s) changes sign; the zero is then bracketed. The critical point is a fold
+if λ turns back there and the path tangent is along φ, else a bifurcation.
 
-A contact without friction holds with a force that may go to zero while μ, of what it holds, is positive; what is left
-without it may have a negative curvature.  Its penalty's stiffness goes to zero with P, too, so that the equilibria
-with the penalty have a fold at some P of the third power of the penetration, and beyond it lead back without contact
-by a sharp turn.  Here P(λ) is followed to its zero.  Where a contact presses in several places, each of them may let
-go.  A fold at which μ would be positive, were the penalty many times as stiff, is none of the mechanism's own either,
-if P has gone to nothing: of what it was where the following began, or, where that began so close that there was little
-left, if what a rigid contact holds has not changed since and P has fallen to a tenth or, at the rate of then, vanishes
-within next to nothing.
+A frictionless contact may lose its force P while μ with the contact is still positive. The mechanism without the
+contact may then have a negative curvature. The stiffness of a penalty contact vanishes with P. The penalised
+equilibria therefore have a fold at P of order penetration³, and return without contact after a sharp turn. Hence P(λ)
+is extrapolated to its zero instead. In a contact with several zones every zone may lose its force.
 
-A stop's moment is an unknown; it is zero to the last digits where it lets go.
+A fold is also attributed to the penalty if two conditions hold. With a much stiffer penalty μ would be positive, and
+P is negligible against its value at the start of the following. If the start was too close for this test, the
+stiffness of the rigid contact has to be unchanged. Then P must have fallen to a tenth or, at the initial rate, must
+vanish almost at once.
+
+The moment of a stop is an unknown and vanishes exactly where the stop opens.
 """
 
 from collections.abc import Iterator
@@ -30,57 +31,59 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Loss
 from fea_reference.advance import advance
-from fea_reference.branch import Branch, Place, onwards, place, sought
+from fea_reference.branch import Branch, BranchPoint, branch_point, point_at, sign_change
 from fea_reference.curvature import Mode, softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
-from fea_reference.off_a_corner import Stretch, cut_short, left_a_corner, slips
-from fea_reference.slipping import gone_past, left_to_go
-from fea_reference.system import System, assemble, stiffened
-from fea_reference.taut import Turn, beyond
+from fea_reference.off_a_corner import Segment, cut_short, find_slip, leaves_corner
+from fea_reference.slipping import distance_to_end, passed_end
+from fea_reference.system import System, assemble, with_stiffness_factor
+from fea_reference.taut import TurningPoint, continue_beyond
 from fea_reference.touch import Touch
 
-WEAKER = 0.6  # of the curvature when contacts were tight: from there on they are to be so again
+WEAKER = 0.6  # times the curvature under tight penalties: below, penalties are tightened again
 _FIRST = 0.01  # arc length of the first step
-_MOST = 0.03  # rad (and lengths): the most that one may move anything
+_MOST = 0.03  # rad (and lengths): largest motion of a step
 _LEAST = 1e-9
 _STEPS = 400
-_LOOK = 30  # of them after which it is seen whether they lead on
-_STRAIGHT = 0.9  # cosine between the directions at both ends of a step
-_LONGER = 2.0  # times as far away as a step is long: a place that is farther is on another branch
-_SHARP = 1e-6  # arc length below which a turn is one
-_GROWN = 1.2  # of the least curvature on the way: it has come past
+_CHECK_INTERVAL = 30  # steps between two checks of progress
+_STRAIGHT = 0.9  # cosine between the tangents at both ends of a step
+_LONGER = 2.0  # step lengths: a farther point is on another branch
+_SHARP = 1e-6  # arc length of a turn that counts as sharp
+_PAST_MINIMUM = 1.2  # times the least curvature so far: the minimum of the curvature has been passed
 _PAST = 5  # steps
 _ROOTS = 60
-_FINE = 1e-8  # of the span
-_SHORT = 1e-4  # of a step
-_WIDE = 1e-4  # of the span: an end that is not known better may be none, passed beside by shorter steps
-_KEPT = 20  # stretches
-_FARTHER = 30.0  # times the arc between them: places that are farther apart are on no one branch
-_BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
-_ALONG = 0.5  # cosine between branch and φ at a fold
-_TURNING = 0.1  # of dλ/ds at the beginning: the most that is left of it at a fold
-_CLEAR, _NEAR = 1e-5, 1e-2  # of μ at the beginning: above round-off, and near enough for what is left of dλ/ds
-_APPROACHED = 1e-8  # of the span: from where a contact's force is zero
-_SHARE = 0.9  # of the way there, at a time
-_SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
-_BACK = 2.0  # times as far as it has come past it, if it has
-_AS_GOOD = 1e-6  # of the span: from where it is as good as there
-_FORESEEN = 1e-3  # of the span: from where an end is foreseen, if no step leads nearer
-_DIFFERENCE = 1e-7  # of the span: what rates are seen by
-_RIGID = 1e4  # times as stiff
-_HELD = 1e-2  # of the curvature at the beginning: that of what is held
-_NOTHING, _LITTLE = 1e-2, 0.1  # of a contact's force at the beginning: enough, or enough where it holds as ever
-_SOON = 1e-4  # of the span: from where a contact's force is on its last way to zero
-_AS_HELD = 0.5  # of what a rigid contact held at the beginning: it holds as ever
+_FINE = 1e-8  # times the span
+_SHORT = 1e-4  # times a step
+_WIDE = 1e-4  # times the span: a critical point with a larger uncertainty may vanish with shorter steps
+_SEGMENTS = 20  # path segments
+_FARTHER = 30.0  # arc lengths between two points: a larger distance means different branches
+_BETWEEN = 1.0  # elements: gap between contact points that separates zones
+_FOLD_COSINE = 0.5  # cosine between tangent and φ at a fold
+_FOLD_TANGENT = 0.1  # times the initial dλ/ds: largest value at a fold
+_CLEAR, _NEAR = 1e-5, 1e-2  # times the initial μ: above round-off, and near enough for dλ/ds at the critical point
+_APPROACHED = 1e-8  # times the span: distance at which a contact force counts as zero
+_SHARE = 0.9  # share of the remaining distance per step
+_SLIPPING = 0.1  # times the span: distance from which an end is followed until it slips off
+_BACK = 2.0  # times the distance passed, if the slip has been passed already
+_AS_GOOD = 1e-6  # times the span: distance at which the slip counts as reached
+_FORESEEN = 1e-3  # times the span: largest distance over which the slip is extrapolated, if no step leads nearer
+_DIFFERENCE = 1e-7  # times the span: increment of finite differences
+_RIGID = 1e4  # stiffness factor that stands for a rigid contact
+_STABLE_SHARE = 1e-2  # times the initial curvature: a contact with a larger one is stable
+# times the initial contact force: negligible, or small while the rigid contact is unchanged
+_NOTHING, _LITTLE = 1e-2, 0.1
+_SOON = 1e-4  # times the span: distance from which a contact force is on its final decrease
+_UNCHANGED_SHARE = 0.5  # times the initial curvature with a rigid contact: the contact is unchanged
 
 
 @dataclass(frozen=True, slots=True)
-class Lost:
-    """The end of a branch at ``value``: the ``system`` there, and φ as ``direction`` (size,) to leave it in.
+class CriticalPoint:
+    """Critical point of a branch at ``value``: the ``system`` and the unit mode φ as ``direction`` (size,).
 
-    All without units; ``curvature``, ``left`` and ``what`` are :class:`cprbm_scene.answer.Critical`'s.
+    All values are dimensionless. ``loss``, ``what``, ``curvature`` and ``left`` as in
+    :class:`cprbm_scene.answer.Critical`.
     """
 
     value: float
@@ -96,406 +99,450 @@ class Lost:
 
 @dataclass(frozen=True, slots=True)
 class CutShort:
-    """That a zone beside an end is cut short by that."""
+    """Marker: an end of a beam cuts a zone short."""
 
 
-def followed(march: March, load: int, target: float, span: float) -> Lost | None:
-    """Follow the branch towards ``target``; how it is lost, or None where it is not before that.
+def follow_branch(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
+    """Follow the branch towards ``target``; returns the critical point before ``target``, or None.
 
-    Then the march has gone some way along it, or none.  Where it turns back, and is one of minima still, the march has
-    gone on to what begins there, or none.
+    Without a critical point the state has moved along the branch, possibly not at all. If the branch turns back and
+    stays a branch of minima, the state moves on to the branch that starts beyond, if any.
     """
     saved = march.saved()
-    end = _along(march, load, target, span, tight=False)
-    if isinstance(end, CutShort):
-        # what sinks into the penalties of a way slips elsewhere
+    critical = _follow(march, load, target, span, tight=False)
+    if isinstance(critical, CutShort):
+        # penetration under the penalties of load stepping shifts the slip
         march.restore(saved)
         march.tighten()
-        end = _along(march, load, target, span, tight=True)
-    if isinstance(end, Turn) and not beyond(march, end, target):
+        critical = _follow(march, load, target, span, tight=True)
+    if isinstance(critical, TurningPoint) and not continue_beyond(march, critical, target):
         march.restore(saved)
-    return end if isinstance(end, Lost) else None
+    return critical if isinstance(critical, CriticalPoint) else None
 
 
-def _along(march: March, load: int, target: float, span: float, *, tight: bool) -> Lost | Turn | CutShort | None:
-    """The same, or where the branch turned back without being lost.
-
-    Where a zone is cut short that penalties that are not ``tight`` make wider, it goes no farther.
-    """
-    march.look()
-    if march.loose:
+def _follow(
+    march: March, load: int, target: float, span: float, *, tight: bool
+) -> CriticalPoint | TurningPoint | CutShort | None:
+    """Critical point, turning point, or None; stops where a zone is cut short that loose penalties widen."""
+    march.update_sides()
+    if march.loosened:
         march.tighten()
-    lost = _letting_go(march, load, target, span) or _slipping_off(march, load, target, span)
-    if lost is not None:
-        return lost
-    # a contact that has sunk into its penalty since may be held where a rigid one is not, on another branch
-    if march.soft():
+    critical = _vanishing_contact(march, load, target, span) or _end_slip(march, load, target, span)
+    if critical is not None:
+        return critical
+    # under a loose penalty a contact may hold a state, on another branch, that a rigid contact does not
+    if march.has_soft_penalty():
         march.tighten()
-    onward = float(np.sign(target - march.values[load]))
+    sense = float(np.sign(target - march.values[load]))
     branch = _branch(march, load, span)
-    here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), onward))
+    here = branch_point(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), sense))
     if not tight and cut_short(march.model, march.system):
         return CutShort()
     if here is None or not here.curvature > 0.0:
         return None
-    first, least, past, firm = here, here.curvature, 0, here.curvature
+    first, least, steps_past_minimum, tight_curvature = here, here.curvature, 0, here.curvature
     length = _FIRST
     known, turn = (here.curvature, length), None
-    gone: list[Stretch] = []
-    wide: tuple[Lost, March] | None = None
+    segments: list[Segment] = []
+    uncertain: tuple[CriticalPoint, March] | None = None
     for tried in range(_STEPS):
-        if tried % _LOOK == 0 and tried > 0:
-            # at this pace it is not lost in all steps
-            if here.curvature > (1.0 - _LOOK / _STEPS) * known[0] and length <= known[1]:
+        if tried % _CHECK_INTERVAL == 0 and tried > 0:
+            # at this rate of decrease no critical point comes within the limit of steps
+            if here.curvature > (1.0 - _CHECK_INTERVAL / _STEPS) * known[0] and length <= known[1]:
                 return turn
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
-        there = onwards(branch, here, length)
-        elsewhere = there is not None and length > _SHARP and not _goes_on_to(branch, here, there, length)
-        if there is None or elsewhere or left_a_corner(march.model, here.system, there.system):
+        there = point_at(branch, here, length)
+        other_branch = there is not None and length > _SHARP and not _same_branch(branch, here, there, length)
+        if there is None or other_branch or leaves_corner(march.model, here.system, there.system):
             length *= 0.25
             if length < _LEAST:
-                gone = [*gone, Stretch(branch, here, 0.0)]
-                return _slipped(march, load, gone, here) or _back_at(march, wide) or turn
+                segments = [*segments, Segment(branch, here, 0.0)]
+                return _corner_slip(march, load, segments, here) or _restore_uncertain_end(march, uncertain) or turn
             continue
-        if any(gone_past(march.model, one, here.system.z, there.system.z) for one in here.system.touches):
-            lost = _slipping_off(march, load, target, span)
+        if any(passed_end(march.model, contact, here.system.z, there.system.z) for contact in here.system.touches):
+            critical = _end_slip(march, load, target, span)
             length *= 0.25
-            if lost is not None or length < _LEAST:
-                return lost or _back_at(march, wide) or turn
+            if critical is not None or length < _LEAST:
+                return critical or _restore_uncertain_end(march, uncertain) or turn
             continue
         if march.least_gap(there.system) < 0.0:
-            event = _event(march, branch, here, length)
+            event = _next_change(march, branch, here, length)
             if event is None:
                 return turn
-            lost = _changed(march, load, event)
-            if lost is not None:
-                return lost
+            critical = _apply_change(march, load, event)
+            if critical is not None:
+                return critical
             branch = _branch(march, load, span)
-            again = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
-            if again is None or not again.curvature > 0.0:
+            restarted = branch_point(branch, float(march.values[load]), march.system, (event.way, event.rate))
+            if restarted is None or not restarted.curvature > 0.0:
                 return turn
-            here, gone = again, []
+            here, segments = restarted, []
             continue
         if there.curvature <= 0.0:
             if not tight and cut_short(march.model, there.system):
                 return CutShort()
-            lost = _lost(march, branch, first, here, there, length)
-            slipped = lost and _slipped(march, load, [*gone, Stretch(branch, here, length)], lost)
-            known_well = lost is not None and lost.uncertainty <= _WIDE * span
-            if slipped is not None or (lost is not None and known_well and (lost.value - target) * onward <= 0.0):
-                return slipped or lost
-            # a step that long leads to another branch, or past where two nearly meet
-            wide = wide if lost is None else (lost, march.saved())
+            critical = _critical_between(march, branch, first, here, there, length)
+            slipped = critical and _corner_slip(march, load, [*segments, Segment(branch, here, length)], critical)
+            known_well = critical is not None and critical.uncertainty <= _WIDE * span
+            if slipped is not None or (
+                critical is not None and known_well and (critical.value - target) * sense <= 0.0
+            ):
+                return slipped or critical
+            # such a long step leads to another branch, or past a near miss of two branches
+            uncertain = uncertain if critical is None else (critical, march.saved())
             march.values, march.system = branch.at(here.value), here.system
             if known_well:
-                return turn  # the target comes before the end
+                return turn  # the target comes before the critical point
             length *= 0.25
             if length < _LEAST:
-                return _back_at(march, wide) or turn
+                return _restore_uncertain_end(march, uncertain) or turn
             continue
         if not tight and cut_short(march.model, there.system):
             return CutShort()
-        if (there.value - target) * onward >= 0.0:
+        if (there.value - target) * sense >= 0.0:
             return turn
-        if march.passed(here.system.z, there.system, "") is not None:
+        if march.passing_failure(here.system.z, there.system, "") is not None:
             return turn
         march.values, march.system = branch.at(there.value), there.system
-        if there.curvature < WEAKER * firm and march.soft():
-            # what stands less firmly goes another way where contacts have sunk into their penalties
+        if there.curvature < WEAKER * tight_curvature and march.has_soft_penalty():
+            # a state of low curvature is sensitive to the penetration of contacts
             march.tighten()
-            branch, firm = _branch(march, load, span), there.curvature
-            again = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
-            if again is None or not again.curvature > 0.0:
+            branch, tight_curvature = _branch(march, load, span), there.curvature
+            restarted = branch_point(branch, float(march.values[load]), march.system, (there.way, there.rate))
+            if restarted is None or not restarted.curvature > 0.0:
                 return turn
-            here, least, past = again, min(least, again.curvature), 0
+            here, least, steps_past_minimum = restarted, min(least, restarted.curvature), 0
             continue
-        if turn is None and here.rate * onward > 0.0 > there.rate * onward:
-            turn = Turn(branch, here, length)
-        past = past + 1 if there.curvature > _GROWN * least else 0
+        if turn is None and here.rate * sense > 0.0 > there.rate * sense:
+            turn = TurningPoint(branch, here, length)
+        steps_past_minimum = steps_past_minimum + 1 if there.curvature > _PAST_MINIMUM * least else 0
         least = min(least, there.curvature)
-        if past >= _PAST:
+        if steps_past_minimum >= _PAST:
             return turn
-        gone = [*gone[-_KEPT:], Stretch(branch, here, length)]
+        segments = [*segments[-_SEGMENTS:], Segment(branch, here, length)]
         here, length = there, 1.5 * length
     return turn
 
 
-def _back_at(march: March, wide: tuple[Lost, March] | None) -> Lost | None:
-    """An end that is not known well, where no shorter step leads on; the march stands there again."""
-    if wide is None:
-        return None
-    march.restore(wide[1])
-    return wide[0]
+def _restore_uncertain_end(march: March, uncertain: tuple[CriticalPoint, March] | None) -> CriticalPoint | None:
+    """The critical point with a large uncertainty, with the state restored; None without such a point.
 
-
-def _slipped(march: March, load: int, gone: list[Stretch], end: Lost | Place) -> Lost | None:
-    """An end that slips off a corner, where a branch that has ``gone`` so far is lost to the penalty before that, or
-    leads on no more.
+    Called if no shorter step continues the branch.
     """
-    slip = slips(march.model, gone, end.system)
+    if uncertain is None:
+        return None
+    march.restore(uncertain[1])
+    return uncertain[0]
+
+
+def _corner_slip(
+    march: March, load: int, segments: list[Segment], end: CriticalPoint | BranchPoint
+) -> CriticalPoint | None:
+    """Critical point where an end slips off a corner, after the ``segments``; None if no end does.
+
+    Called where the branch is lost to the penalty before the slip, or cannot be continued.
+    """
+    slip = find_slip(march.model, segments, end.system)
     if slip is None:
         return None
-    march.values, march.system = gone[-1].branch.at(slip.place.value), slip.place.system
-    left = softest(march.model, _without(march, slip.one))
-    found = _ahead(march, load, slip.value - slip.place.value, Loss.SLIP, slip.one, slip.place.curvature, left)
-    return replace(found, uncertainty=float(abs(slip.value - end.value)))
+    march.values, march.system = segments[-1].branch.at(slip.place.value), slip.place.system
+    mode_without = softest(march.model, _without(march, slip.contact))
+    critical = _extrapolated_end(
+        march, load, slip.value - slip.place.value, Loss.SLIP, slip.contact, slip.place.curvature, mode_without
+    )
+    return replace(critical, uncertainty=float(abs(slip.value - end.value)))
 
 
 def _branch(march: March, load: int, span: float) -> Branch:
     return Branch(march.model, march.settings, dict(march.penalties), march.acting, march.values.copy(), load, span)
 
 
-def _cosine(branch: Branch, here: Place, there: Place) -> float:
+def _cosine(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:
     return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
 
 
-def _goes_on_to(branch: Branch, here: Place, there: Place, length: float) -> bool:
-    """Whether the branch goes from one place to another, and that by a ``length`` of arc."""
-    return _cosine(branch, here, there) >= _STRAIGHT and _apart(branch, here, there) <= _LONGER * length
+def _same_branch(branch: Branch, here: BranchPoint, there: BranchPoint, length: float) -> bool:
+    """True if both points are on the same branch, a ``length`` of arc apart."""
+    return _cosine(branch, here, there) >= _STRAIGHT and _distance(branch, here, there) <= _LONGER * length
 
 
-def _apart(branch: Branch, one: Place, other: Place) -> float:
-    """How far two places are from each other as the arc length has it."""
-    way = (other.system.z.values - one.system.z.values) + (other.system.z.rest - one.system.z.rest)
-    return float(np.sqrt(way @ (branch.weights * way) + branch.weight * (other.value - one.value) ** 2))
+def _distance(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:
+    """Distance of two points in the metric of the arc length."""
+    difference = (there.system.z.values - here.system.z.values) + (there.system.z.rest - here.system.z.rest)
+    return float(np.sqrt(difference @ (branch.weights * difference) + branch.weight * (there.value - here.value) ** 2))
 
 
-def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
-    """The place, before ``length``, at which a contact or stop changes: just behind it."""
-    return sought(branch, here, length, lambda there: march.least_gap(there.system))
+def _next_change(march: March, branch: Branch, here: BranchPoint, length: float) -> BranchPoint | None:
+    """Point just behind the first change of a contact or stop within ``length``."""
+    return sign_change(branch, here, length, lambda there: march.least_gap(there.system))
 
 
-def _changed(march: March, load: int, event: Place) -> Lost | None:
-    """Let contacts and stops change where they do; what is lost if one lets go of what cannot stand."""
-    changing = [stop for stop in march.model.stops if march.room(stop, event.system) < 0.0]
+def _apply_change(march: March, load: int, event: BranchPoint) -> CriticalPoint | None:
+    """Close contacts and switch stops at ``event``; the critical point if an opening stop leaves an unstable state."""
+    changing = [stop for stop in march.model.stops if march.stop_margin(stop, event.system) < 0.0]
     march.values[load], march.system = event.value, event.system
-    march.watch_what_touches(load)
-    march.switch(load, changing)
-    return stop_lost(march, load, event.curvature, event.system)
+    march.close_touching(load)
+    march.switch_stops(load, changing)
+    return stop_instability(march, load, event.curvature, event.system)
 
 
-def stop_lost(march: March, load: int, held: float, system: System) -> Lost | None:
-    """What is lost by stops that have just let go of a ``system`` of curvature ``held``; None if it stands."""
-    gone = [
+def stop_instability(march: March, load: int, curvature: float, system: System) -> CriticalPoint | None:
+    """Critical point of stops just opened in a ``system`` of the given ``curvature``; None if the state is stable."""
+    opened = [
         stop.known_as
         for stop in march.model.stops
         if stop.name in system.acting.limits and stop.name not in march.acting.limits
     ]
-    left = softest(march.model, march.system)
-    if not gone or left.curvature > 0.0:
+    mode = softest(march.model, march.system)
+    if not opened or mode.curvature > 0.0:
         return None
     value = float(march.values[load])
     energy = potential_energy(march.model, march.system, march.values)
     uncertainty = float(np.spacing(abs(value)))
-    return Lost(value, uncertainty, Loss.STOP, gone[0], held, left.curvature, energy, march.system, left.direction)
-
-
-def about_to_go(march: March, load: int, value: float) -> bool:
-    """Whether the force of a contact will vanish before ``value``, at the rate of now, that nothing stands without."""
-    way = value - float(march.values[load])
-    going = _next_to_go(march, load, float(np.sign(way)))
-    return (
-        going is not None
-        and abs(going[1]) < abs(way)
-        and not softest(march.model, _without(march, going[0])).curvature > 0.0
+    return CriticalPoint(
+        value, uncertainty, Loss.STOP, opened[0], curvature, mode.curvature, energy, march.system, mode.direction
     )
 
 
-def _letting_go(march: March, load: int, target: float, span: float) -> Lost | None:
-    """A contact that lets go of what cannot stand without it, if one is about to."""
-    onward = float(np.sign(target - march.values[load]))
+def force_about_to_vanish(march: March, load: int, value: float) -> bool:
+    """True if a contact force, extrapolated linearly, vanishes before ``value`` and leaves an unstable state."""
+    distance = value - float(march.values[load])
+    next_contact = _next_vanishing(march, load, float(np.sign(distance)))
+    return (
+        next_contact is not None
+        and abs(next_contact[1]) < abs(distance)
+        and not softest(march.model, _without(march, next_contact[0])).curvature > 0.0
+    )
+
+
+def _vanishing_contact(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
+    """Critical point where a contact loses its force and leaves an unstable state; None if none is near."""
+    sense = float(np.sign(target - march.values[load]))
     saved = march.saved()
     while True:
-        going = _next_to_go(march, load, onward)
-        if going is None or going[1] * onward > (target - march.values[load]) * onward:
+        next_contact = _next_vanishing(march, load, sense)
+        if next_contact is None or next_contact[1] * sense > (target - march.values[load]) * sense:
             break
-        one, way = going
-        left = softest(march.model, _without(march, one))
-        if left.curvature > 0.0:
+        contact, distance = next_contact
+        mode_without = softest(march.model, _without(march, contact))
+        if mode_without.curvature > 0.0:
             break
-        if abs(way) <= _APPROACHED * span:
-            lost = _let_go(march, load, one, way, left)
-            if lost is not None:
-                return lost
+        if abs(distance) <= _APPROACHED * span:
+            critical = _end_at_zero_force(march, load, contact, distance, mode_without)
+            if critical is not None:
+                return critical
             break
         before, rate = march.saved(), march.rate(load)
-        size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
-        trouble = march.step(load, float(march.values[load]) + np.copysign(size, way), march.onward(load, rate, target))
+        size = min(_SHARE * abs(distance), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+        trouble = march.step(
+            load, float(march.values[load]) + np.copysign(size, distance), march.path_tangent(load, rate, target)
+        )
         if trouble is not None or not softest(march.model, march.system).curvature > 0.0:
             march.restore(before)
-            lost = _let_go(march, load, one, way, left) if abs(way) <= _FORESEEN * span else None
-            if lost is not None:
-                return lost
+            critical = (
+                _end_at_zero_force(march, load, contact, distance, mode_without)
+                if abs(distance) <= _FORESEEN * span
+                else None
+            )
+            if critical is not None:
+                return critical
             break
     march.restore(saved)
     return None
 
 
-def _let_go(march: March, load: int, one: Touch, way: float, left: Mode) -> Lost | None:
-    """The end where one contact lets go, a ``way`` ahead, and what is ``left`` then; None if it does not hold now."""
-    held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
-    if not held.curvature > 0.0:
+def _end_at_zero_force(
+    march: March, load: int, contact: Touch, distance: float, mode_without: Mode
+) -> CriticalPoint | None:
+    """Critical point at the zero of a contact force, at ``distance``, with the mode ``mode_without`` the contact.
+
+    None if the state is unstable with a rigid contact, too.
+    """
+    mode_with = softest(march.model, with_stiffness_factor(march.model, march.system, contact, _RIGID))
+    if not mode_with.curvature > 0.0:
         return None
-    return _ahead(march, load, way, Loss.CONTACT, one, held.curvature, left)
+    return _extrapolated_end(march, load, distance, Loss.CONTACT, contact, mode_with.curvature, mode_without)
 
 
-def _ahead(march: March, load: int, way: float, loss: Loss, one: Touch, held: float, left: Mode) -> Lost:
-    """The end a ``way`` ahead of now at which one contact, with which the curvature is what is ``held``, is lost."""
-    return Lost(
-        float(march.values[load] + way),
-        abs(way),
+def _extrapolated_end(
+    march: March, load: int, distance: float, loss: Loss, contact: Touch, curvature: float, mode_without: Mode
+) -> CriticalPoint:
+    """Critical point at ``distance`` in λ, where a contact ends; ``curvature`` is the value with the contact."""
+    return CriticalPoint(
+        float(march.values[load] + distance),
+        abs(distance),
         loss,
-        one.pair.name,
-        held,
-        left.curvature,
+        contact.pair.name,
+        curvature,
+        mode_without.curvature,
         potential_energy(march.model, march.system, march.values),
         march.system,
-        left.direction,
+        mode_without.direction,
     )
 
 
-def _slipping_off(march: March, load: int, target: float, span: float) -> Lost | None:
-    """An end that comes past the end of the beam on which it presses, if one is about to.
+def _end_slip(march: March, load: int, target: float, span: float) -> CriticalPoint | None:
+    """Critical point where a pressing end passes the end of the other beam; None if none is near.
 
-    Its zone has a width, the less the tighter its penalty, and some of that is past before: from there on the way that
-    is left is foreseen, and is what is uncertain.
+    The zone has a finite width, smaller for tighter penalties, and passes in part earlier. From there on the
+    remaining distance is extrapolated, and is the uncertainty.
     """
-    onward, saved = float(np.sign(target - march.values[load])), march.saved()
+    sense, saved = float(np.sign(target - march.values[load])), march.saved()
     tight = behind = False
-    while (going := _next_to_slip(march, load, onward * span)) is not None:
-        one, way = going
-        if tight and not behind and -_SLIPPING * span <= way * onward < 0.0:
-            # where tight penalties have it, the march has come past
+    while (next_slip := _next_slip(march, load, sense * span)) is not None:
+        contact, distance = next_slip
+        if tight and not behind and -_SLIPPING * span <= distance * sense < 0.0:
+            # under tight penalties the slip lies behind the current state
             march.restore(saved)
-            if not _nearer(march, load, _BACK * way):
+            if not _step_towards(march, load, _BACK * distance):
                 break
             march.tighten()
             behind = True
             continue
-        if not 0.0 <= way * onward <= min(_SLIPPING * span, (target - march.values[load]) * onward):
+        if not 0.0 <= distance * sense <= min(_SLIPPING * span, (target - march.values[load]) * sense):
             break
         if not tight:
-            # what sinks into the penalties of a way slips elsewhere, and that may lie behind
+            # penetration shifts the slip, possibly to a point behind the current state
             march.tighten()
             tight = True
             continue
-        if abs(way) > _AS_GOOD * span and _nearer(march, load, way):
+        if abs(distance) > _AS_GOOD * span and _step_towards(march, load, distance):
             continue
-        if abs(way) > _FORESEEN * span:
+        if abs(distance) > _FORESEEN * span:
             break
-        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, softest(march.model, _without(march, one)))
+        return _extrapolated_end(
+            march, load, distance, Loss.SLIP, contact, march.curvature, softest(march.model, _without(march, contact))
+        )
     march.restore(saved)
     return None
 
 
-def _nearer(march: March, load: int, way: float) -> bool:
-    """Whether a step leads on for most of a ``way``, or for as much of it as one may; if not, the march stays."""
+def _step_towards(march: March, load: int, distance: float) -> bool:
+    """Step over most of the ``distance``, within the limit of motion; True on success, else the state stays."""
     before, rate = march.saved(), march.rate(load)
-    size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
-    value = float(march.values[load] + np.copysign(size, way))
-    if march.step(load, value, march.onward(load, rate, value)) is None:
+    size = min(_SHARE * abs(distance), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+    value = float(march.values[load] + np.copysign(size, distance))
+    if march.step(load, value, march.path_tangent(load, rate, value)) is None:
         return True
     march.restore(before)
     return False
 
 
-def _next_to_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | None:
-    """The contact in which an end is first to come past another, and how far it is there at the rate of now."""
+def _next_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | None:
+    """The contact with the first end to slip off, and the distance in λ at the current rate."""
     step = _DIFFERENCE * ahead
-    moved = advance(march.model, march.system.z, step * march.rate(load))
-    found: tuple[Touch, float] | None = None
-    for one in march.system.touches:
-        here = left_to_go(march.model, one, march.system.z)
-        there = None if here is None else left_to_go(march.model, one, moved)
+    moved_state = advance(march.model, march.system.z, step * march.rate(load))
+    first_slip: tuple[Touch, float] | None = None
+    for contact in march.system.touches:
+        here = distance_to_end(march.model, contact, march.system.z)
+        there = None if here is None else distance_to_end(march.model, contact, moved_state)
         if here is None or there is None or not there < here:
             continue
-        way = step * here / (here - there)
-        if found is None or abs(way) < abs(found[1]):
-            found = one, way
-    return found
+        distance = step * here / (here - there)
+        if first_slip is None or abs(distance) < abs(first_slip[1]):
+            first_slip = contact, distance
+    return first_slip
 
 
-def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
-    """What may have let go: of each contact that presses ``now`` all of it at ``first`` and now, then each of its zones
-    that are as many as then.
-    """
-    begun = {old.pair: old for old in first.touches if old.closed}
-    both = [(begun[one.pair], one) for one in now.touches if one.closed and one.pair in begun]
-    for old, one in both:
-        yield old, one
-        zones, before = _zones(one), _zones(old)
+def _contact_parts_since(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
+    """Pairs (contact at ``first``, contact ``now``) of all closed contacts, then of their zones if the counts agree."""
+    initial_contacts = {
+        initial_contact.pair: initial_contact for initial_contact in first.touches if initial_contact.closed
+    }
+    both = [
+        (initial_contacts[contact.pair], contact)
+        for contact in now.touches
+        if contact.closed and contact.pair in initial_contacts
+    ]
+    for initial_contact, contact in both:
+        yield initial_contact, contact
+        zones, before = _zones(contact), _zones(initial_contact)
         if len(zones) == len(before) > 1:
             yield from zip(before, zones, strict=True)
 
 
-def _parts(one: Touch) -> list[Touch]:
-    """What of a contact may let go: its zones, where it has several, and all of it."""
-    zones = _zones(one)
-    return [one, *zones] if len(zones) > 1 else [one]
+def _parts(contact: Touch) -> list[Touch]:
+    """Parts of a contact that may lose their force: the contact, and its zones if there are several."""
+    zones = _zones(contact)
+    return [contact, *zones] if len(zones) > 1 else [contact]
 
 
-def _zones(one: Touch) -> list[Touch]:
-    """A contact as that of each of its zones alone, along the first beam."""
-    order = np.argsort(one.zeta, kind="stable")
+def _zones(contact: Touch) -> list[Touch]:
+    """The contact restricted to every zone along the first beam."""
+    order = np.argsort(contact.zeta, kind="stable")
     number = np.empty(len(order), dtype=int)
-    number[order] = np.concatenate(([0], np.cumsum(np.diff(one.zeta[order]) > _BETWEEN)))
-    return [replace(one, stiffness=np.where(number == i, one.stiffness, 0.0)) for i in range(number.max() + 1)]
+    number[order] = np.concatenate(([0], np.cumsum(np.diff(contact.zeta[order]) > _BETWEEN)))
+    return [replace(contact, stiffness=np.where(number == i, contact.stiffness, 0.0)) for i in range(number.max() + 1)]
 
 
-def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, held: float) -> bool:
-    """Whether the force of what a rigid contact would hold with a curvature ``held`` has come to nothing."""
-    if one.push < _NOTHING * begun.push:
+def _force_vanished(
+    march: March, branch: Branch, first: BranchPoint, initial_contact: Touch, contact: Touch, curvature: float
+) -> bool:
+    """True if the force of a contact has vanished, where the rigid contact would give the ``curvature``."""
+    if contact.push < _NOTHING * initial_contact.push:
         return True
-    change = float(begun.foreseen(first.way).sum()) - begun.push
-    soon = change < 0.0 and begun.push * abs(first.rate) < -change * _SOON * branch.span and one.push < begun.push
-    if not (soon or one.push < _LITTLE * begun.push):
+    change = float(initial_contact.predicted_forces(first.way).sum()) - initial_contact.push
+    soon = (
+        change < 0.0
+        and initial_contact.push * abs(first.rate) < -change * _SOON * branch.span
+        and contact.push < initial_contact.push
+    )
+    if not (soon or contact.push < _LITTLE * initial_contact.push):
         return False
-    return held > _AS_HELD * softest(march.model, stiffened(march.model, first.system, begun, _RIGID)).curvature
+    return (
+        curvature
+        > _UNCHANGED_SHARE
+        * softest(march.model, with_stiffness_factor(march.model, first.system, initial_contact, _RIGID)).curvature
+    )
 
 
-def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] | None:
-    """The contact, or the zone of several, whose force is first to vanish at the rate of now, and how far that is."""
+def _next_vanishing(march: March, load: int, sense: float) -> tuple[Touch, float] | None:
+    """The contact or zone whose force vanishes first at the current rate, and the distance in λ."""
     rate = march.rate(load)
-    found: tuple[Touch, float] | None = None
-    for one in (part for each in march.system.touches if each.closed for part in _parts(each)):
-        change = float(one.foreseen(onward * rate).sum()) - one.push
+    first_part: tuple[Touch, float] | None = None
+    for part in (part for contact in march.system.touches if contact.closed for part in _parts(contact)):
+        change = float(part.predicted_forces(sense * rate).sum()) - part.push
         if change >= 0.0:
             continue
-        way = float(-one.push / change)
-        if found is None or way < abs(found[1]):
-            found = one, onward * way
-    return found
+        distance = float(-part.push / change)
+        if first_part is None or distance < abs(first_part[1]):
+            first_part = part, sense * distance
+    return first_part
 
 
-def _without(march: March, one: Touch) -> System:
-    """The state of now without one contact, or without one of its zones."""
-    if all(one is not each for each in march.system.touches):
-        return stiffened(march.model, march.system, one, 0.0)
-    others = {pair: penalty for pair, penalty in march.penalties.items() if pair != one.pair}
+def _without(march: March, contact: Touch) -> System:
+    """The current state without a contact, or without a zone of a contact."""
+    if all(contact is not other for other in march.system.touches):
+        return with_stiffness_factor(march.model, march.system, contact, 0.0)
+    others = {pair: penalty for pair, penalty in march.penalties.items() if pair != contact.pair}
     return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
 
 
-def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place, length: float) -> Lost | None:
-    """What happens between two places, the one with a positive curvature and the other without.
+def _critical_between(
+    march: March, branch: Branch, first: BranchPoint, here: BranchPoint, there: BranchPoint, length: float
+) -> CriticalPoint | None:
+    """Critical point between two points with positive and non-positive curvature.
 
-    None where no places are found between them at which it goes to zero: they are on no one branch.
+    None if no point with a vanishing curvature is found between: the points are on different branches.
     """
     low, high, weights, clear = (0.0, here), (length, there), [1.0, 1.0], None
     for _ in range(_ROOTS):
         (s, before), (t, behind) = low, high
         if abs(behind.value - before.value) <= _FINE * branch.span and t - s <= _SHORT * length:
             break
-        if length > _SHARP and _apart(branch, before, behind) > _FARTHER * (t - s):
+        if length > _SHARP and _distance(branch, before, behind) > _FARTHER * (t - s):
             return None
-        # regula falsi, with the weight halved of the end that stays (the Illinois variant)
+        # regula falsi, with the weight of the unchanged end halved (Illinois variant)
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)
-        # where the tangent is as good as singular there may be no place to be found
-        tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
-        share, middle = next(((part, found) for part, found in tried if found is not None), (share, None))
+        # near a singular tangent there may be no solution
+        tried = ((part, point_at(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
+        share, middle = next(
+            ((part, place_found) for part, place_found in tried if place_found is not None), (share, None)
+        )
         if middle is None:
-            if min(before.curvature, -behind.curvature) > _HELD * first.curvature:
+            if min(before.curvature, -behind.curvature) > _STABLE_SHARE * first.curvature:
                 return None
             break
         clear = middle if _CLEAR < abs(middle.curvature) / first.curvature < _NEAR else clear
@@ -509,17 +556,19 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     uncertainty = float(abs(behind.value - before.value) + np.spacing(abs(value)))
     march.values, march.system = branch.at(before.value), before.system
     energy = potential_energy(march.model, march.system, march.values)
-    for begun, one in _holding(first.system, before.system):
-        held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)).curvature
-        if held > _HELD * first.curvature and _gone(march, branch, first, begun, one, held):
-            # a zone of several leaves the others
-            left = softest(march.model, stiffened(march.model, before.system, one, 0.0))
-            lets_go = Loss.CONTACT, one.pair.name, held, left.curvature
-            return Lost(value, uncertainty, *lets_go, energy, before.system, left.direction)
+    for initial_contact, contact in _contact_parts_since(first.system, before.system):
+        curvature = softest(march.model, with_stiffness_factor(march.model, before.system, contact, _RIGID)).curvature
+        if curvature > _STABLE_SHARE * first.curvature and _force_vanished(
+            march, branch, first, initial_contact, contact, curvature
+        ):
+            # the other zones stay in contact
+            mode_without = softest(march.model, with_stiffness_factor(march.model, before.system, contact, 0.0))
+            lets_go = Loss.CONTACT, contact.pair.name, curvature, mode_without.curvature
+            return CriticalPoint(value, uncertainty, *lets_go, energy, before.system, mode_without.direction)
     mass = lumped_mass(march.model)
     along, size = float(before.mode.direction @ (mass * before.way)), float(np.sqrt(before.way @ (mass * before.way)))
-    # τ goes to zero with μ, or not at all; round-off over the last μ makes τ small at a bifurcation too
-    fold = abs((clear or before).rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
+    # τ vanishes with μ at a fold only; round-off over the last μ makes τ small at a bifurcation too
+    fold = abs((clear or before).rate) < _FOLD_TANGENT * abs(first.rate) and abs(along) > _FOLD_COSINE * size
     loss, side = Loss.FOLD if fold else Loss.BIFURCATION, -1.0 if fold and along < 0.0 else 1.0
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
-    return Lost(value, uncertainty, loss, "", zero, zero, energy, before.system, side * before.mode.direction)
+    return CriticalPoint(value, uncertainty, loss, "", zero, zero, energy, before.system, side * before.mode.direction)

@@ -1,4 +1,4 @@
-"""The smooth neutral line: cubic Hermite through the nodes, with a tangent at each.
+"""Smooth neutral line: cubic Hermite interpolation of the nodes and tangents.
 
 ======  ======================================================================
 symbol  meaning
@@ -10,9 +10,9 @@ m       speed of the cubic at both nodes, L (1 + c N + (θ₂ − θ₁)²/48)
 t, n    unit tangent (cos θ, sin θ) at a node, and its normal (−sin θ, cos θ)
 ======  ======================================================================
 
-With that speed an element whose nodes lie on an arc leaves it by a share of h⁶ only: an arc of angle 2α needs
-m = 4 R tan(α/2) = 2 R α (1 + α²/12 + ...) (the handles of Bézier's arc).  A speed of L alone would bulge the element by
-h² κ c N/8 and h⁴ κ³/384, for which a stiff contact beside a clamp would have the clamp pay.
+With this speed an element between nodes of an arc deviates from the arc by a share of h⁶ only. An arc of angle 2α
+needs m = 4 R tan(α/2) = 2 R α (1 + α²/12 + ...), the handles of a Bézier arc. A speed of L would bulge the element by
+h² κ c N/8 and h⁴ κ³/384. A stiff contact beside a clamp would then load the clamp instead.
 """
 
 from __future__ import annotations
@@ -31,14 +31,17 @@ _ARC = 24.0
 
 @dataclass(frozen=True, slots=True)
 class NeutralLine:
-    """A beam of n elements as it lies.
+    """Neutral line of a beam with n elements in a state.
 
-    ``points`` (2, n+1) and what their rounding left, ``rest`` (2, n+1); ``angles`` (n+1,); the elements'
-    undeformed ``lengths`` (n,), their ``speeds`` m, what these ``give`` by N and, ``arching``, change by θ₂ (n,);
-    ``tangents`` (2, n+1), and as complex numbers ``aheads`` (n+1,); and the coefficients ``cubic`` (3, n) of ξ, ξ², ξ³
-    of every element, from its first node, as complex numbers x + i y, as ``nodes`` and ``rests`` (n+1,) are the points
-    and their rests.
-    ``longest`` is the largest of the lengths.
+    Attributes:
+        points, rest: node positions (2, n+1) and their round-off.
+        angles: tangent angles (n+1,) at the nodes.
+        lengths, speeds: undeformed lengths and speeds m (n,) of the elements.
+        give, arching: derivatives (n,) of m by N and by θ₂.
+        tangents, aheads: unit tangents at the nodes, (2, n+1) and as complex numbers (n+1,).
+        cubic: coefficients (3, n) of ξ, ξ², ξ³ from the first node of every element, complex x + i y.
+        nodes, rests: ``points`` and ``rest`` as complex numbers (n+1,).
+        longest: the largest of the lengths.
     """
 
     points: Array
@@ -59,7 +62,7 @@ class NeutralLine:
     def through(
         cls, points: Array, angles: Array, lengths: Array, rest: Array, compliance: Array, axial: Array
     ) -> NeutralLine:
-        """The line through ``points`` + ``rest`` (2, n+1), its elements stretched by ``compliance`` ``axial`` (n,)."""
+        """The line through ``points`` + ``rest`` (2, n+1), with elements stretched by ``compliance`` ``axial`` (n,)."""
         cos, sin = np.cos(angles), np.sin(angles)
         nodes, rests, ahead = points[0] + 1j * points[1], rest[0] + 1j * rest[1], cos + 1j * sin
         step, error = summed(nodes[1:], -nodes[:-1])
@@ -79,15 +82,15 @@ class NeutralLine:
         return self.lengths.size
 
     def locate(self, zeta: Array) -> tuple[Index, Array]:
-        """Element and ξ of each place."""
+        """Element (k,) and ξ (k,) of places (k,)."""
         element = np.minimum(zeta.astype(np.int64), self.n - 1)
         return element, zeta - element
 
     def around(self, zeta: Array) -> Around:
-        """What there is at places (k,)."""
+        """Position relative to the element's first node and derivatives, at places (k,)."""
         e, xi = self.locate(zeta)
         t, b, a = self.cubic.take(e, axis=1)
-        xi = xi.astype(np.complex128)  # once, and not at every product
+        xi = xi.astype(np.complex128)  # converted once instead of at every product
         last = xi * a
         bent = b + last
         twice = bent + last
@@ -95,14 +98,17 @@ class NeutralLine:
         return Around(e, xi * (t + xi * bent), t + xi * (bent + twice), half + half)
 
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
-        """Position, first and second derivative by ζ, each (2, k)."""
+        """Position, first and second derivative by ζ, (2, k) all."""
         there = self.around(zeta)
-        return plane(self.nodes[there.element] + there.way), plane(there.ahead), plane(there.bent)
+        return as_plane(self.nodes[there.element] + there.way), as_plane(there.ahead), as_plane(there.bent)
 
 
 @dataclass(frozen=True, slots=True)
 class Around:
-    """Of k places on a line: the ``element``, the ``way`` from its first node, x' and x'' by ζ; as complex numbers."""
+    """k places on a line, as complex numbers.
+
+    The ``element``, the vector ``way`` from its first node, and x', x'' by ζ as ``ahead`` and ``bent``.
+    """
 
     element: Index
     way: Complex
@@ -110,27 +116,27 @@ class Around:
     bent: Complex
 
     def moved(self, by: Array) -> Around:
-        """What there is at places so little farther (k,) that their squares are nothing."""
+        """The places moved by small ``by`` (k,), to first order."""
         return Around(self.element, self.way + by * self.ahead, self.ahead + by * self.bent, self.bent)
 
 
-def plane(number: Complex) -> Array:
+def as_plane(number: Complex) -> Array:
     """x + i y as (2, k)."""
     return np.array([number.real, number.imag])
 
 
-def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> Complex:
-    """From places (k,) of the second line to those of the first, x + i y, with all digits."""
+def line_difference(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> Complex:
+    """Vectors x + i y (k,) from places of the second line to places of the first, without cancellation."""
     e, e_m = at.element, at_m.element
     value, error = summed(first.nodes[e], -second.nodes[e_m])
     nodes = value + (error + (first.rests[e] - second.rests[e_m]))
     return np.asarray(nodes + (at.way - at_m.way))
 
 
-def by_chord(l: Array, L: Array, turned: Array) -> tuple[Array, Array, Array, Array, Array]:  # noqa: E741 - the chord's length
-    """By how much l (1 + t²/16), the speed of a chord l that turns by t, is more than L (1 + t²/48) without stretch.
+def chord_speed_excess(l: Array, L: Array, turned: Array) -> tuple[Array, Array, Array, Array, Array]:  # noqa: E741 - the chord's length
+    """Excess of the speed l (1 + t²/16) of a chord l that turns by t over the unstretched speed L (1 + t²/48).
 
-    That (k,), and its derivatives by l, by t, by both, and twice by t.
+    The excess (k,) and its derivatives by l, by t, by both, and twice by t.
     """
     by_l, rest = 1.0 + turned**2 / 16.0, l / 8.0 - L / 24.0
     return l * by_l - L * (1.0 + turned**2 / (2.0 * _ARC)), by_l, rest * turned, turned / 8.0, rest
@@ -155,13 +161,13 @@ def shape_slopes(xi: Array) -> Array:
 
 
 def _turned_by(v: Array, H: Array, line: NeutralLine, e: Index) -> tuple[Complex, Complex]:
-    """H₂ (v·t₁ + i v·n₁) and H₄ (v·t₂ + i v·n₂) of fixed vectors ``v`` (2, k), (k,) each."""
+    """H₂ (v·t₁ + i v·n₁) and H₄ (v·t₂ + i v·n₂), (k,) both, for constant vectors ``v`` (2, k)."""
     fixed, backs = v[0] + 1j * v[1], line.aheads.conj()
     return H[1] * (fixed * backs[e]), H[3] * (fixed * backs[e + 1])
 
 
-def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
-    """Derivative of v·x by (x₁, y₁, θ₁, x₂, y₂, θ₂, N) for fixed vectors ``v`` (2, k): (7, k)."""
+def projected_gradient(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
+    """Derivative (7, k) of v·x by (x₁, y₁, θ₁, x₂, y₂, θ₂, N) for constant vectors ``v`` (2, k)."""
     before, behind = _turned_by(v, H, line, e)
     ahead = before.real + behind.real
     m, turn = line.speeds[e], line.arching[e] * ahead
@@ -171,8 +177,11 @@ def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     )
 
 
-def twice_along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
-    """Second derivatives of v·x by the same, (7, 7, k): of m (H₂ t₁ + H₄ t₂) by θ₁, θ₂ and N, a product."""
+def projected_hessian(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
+    """Second derivatives (7, 7, k) of v·x by the same unknowns, for constant vectors ``v`` (2, k).
+
+    Only m (H₂ t₁ + H₄ t₂) is nonlinear, in θ₁, θ₂ and N.
+    """
     at_first, at_second = _turned_by(v, H, line, e)
     (before, first), (behind, second) = (at_first.real, at_first.imag), (at_second.real, at_second.imag)
     m, arching, give = line.speeds[e], line.arching[e], line.give[e]

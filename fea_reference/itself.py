@@ -1,27 +1,26 @@
-"""Where a beam overlaps itself: pairs of its own places, and on which side of each other they lie.
+"""Self-contact: pairs of places of a single beam, and their sides.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 x, x_m  points of the neutral line at ζ and ζ_m
-f       (x − x_m)·x_m': positive where the distance of x grows less on the way along ζ_m
+f       (x − x_m)·x_m': positive where the distance from x decreases along ζ_m
 d       n·(x − x_m), n the normal to the left at ζ_m
 ======  =====================================================================================
 
-Of the distance from a place, every least value along the line is where f goes through zero from above.  One of them
-is the place itself.  Any other is parted from it by a largest value, and there too the chord is normal to the line; a
-chord is the mean of the tangents between its ends, so that these turn by more than a right angle.  Neighbours are
-therefore told from what may touch by being the same least value, with no length or angle to choose.  Between sides
-that touch the tangents turn by about π, or 2π in a coil.
+Partners: a minimum of the distance from x along the line is a zero of f from positive to negative. The place itself
+is such a minimum. Any other minimum is separated from it by a maximum, where the chord is again normal to the line. A
+chord is the mean of the tangents in between, so that these turn by more than a right angle. Neighbours on the line
+and contact partners are thus different minima, without any threshold of length or angle. Between touching sides the
+tangents turn by about π, or 2π in a coil.
 
-Each two places are looked at once, from the later one or from the earlier one; see :class:`Roles`.  A place may have
-several partners: those that follow each other along the beam are one sequence.  Of what has thickness an end is a
-circle, and a partner of all places that see it by a least value, at whatever angle: where f is negative at the start,
-or positive at the other end.
+Every pair of places is considered once, from the later or from the earlier place; see :class:`Roles`. A place may
+have several partners; consecutive partners along the beam form a sequence. An end of a thick beam is a circle and a
+partner, at any angle, of all places with a distance minimum there: f negative at the start, or positive at the other
+end.
 
-On which side a place lies is not told by where it is once lines without thickness overlap.  It is what it was in the
-state that the march has reached last, for the places that were across from each other near by, and for others what is
-seen.  Near by is less than halfway to another lap.
+Sides: once lines without thickness overlap, their position does not show the side. The side is that of the last
+accepted state for nearby pairs of places, else the present position. Nearby means less than halfway to the next coil.
 """
 
 from __future__ import annotations
@@ -38,25 +37,26 @@ from scipy.spatial import KDTree
 from cprbm_scene.answer import Array, Ints
 from fea_reference.edge import Edge
 from fea_reference.facing import Tapers, borders
-from fea_reference.hermite import NeutralLine, plane
+from fea_reference.hermite import NeutralLine, as_plane
 from fea_reference.neighbours import nearest
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, rounded, survey
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, gap_round_off, one_side, survey
 
-_ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
-_FOLLOWS = 2.0  # elements: by which partners of places that follow each other differ at most
+_ALIKE = 0.5  # share of the distance of two places along the beam: largest deviation from a pair of known side
+_FOLLOWS = 2.0  # elements: largest difference between partners of consecutive places
 _ITERATIONS = 60
-_TABLE = 80_000  # points and nodes: so many are held against each other faster one and all than by a tree
-_NOTHING = 1e-9  # of an element's length, squared
+_TABLE = 80_000  # points times nodes: limit above which a tree search is faster than a table
+_NOTHING = 1e-9  # times the square of an element's length
 
 
 @dataclass(frozen=True, slots=True)
 class Roles:
-    """Which of two places carries the integral: the ``later``, if the beam's end may lie over its inside, or else.
+    """Choice of the place that carries the contact integral, and known sides.
 
-    The other is then never nearer to that end than to its own, which it is ``ended`` by if it has thickness.
+    The integral runs along the ``later`` place of a pair, if the beam's end may lie over its own side, else along the
+    earlier. The partner is then never nearer to this end than to the other end, which limits the partner (``ended``)
+    if thick.
 
-    ``across`` (k, 2) are places ζ and ζ_m that were across from each other in the state that was reached last,
-    ``side`` (k,) of the second one on which the first lay there.
+    ``across`` (k, 2) are pairs of places ζ and ζ_m of the last accepted state, and ``side`` (k,) are their sides.
     """
 
     later: bool
@@ -65,31 +65,31 @@ class Roles:
     side: Array = field(compare=False)
 
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
-        """The side on which places ``zeta`` (k,) lie of ``zeta_m`` (k,); what ``d`` (k,) says where it is not known."""
-        seen = np.where(d < 0.0, -1.0, 1.0)
+        """Sides (k,) of places ``zeta`` (k,) against ``zeta_m`` (k,), from known pairs or the sign of ``d`` (k,)."""
+        present = np.where(d < 0.0, -1.0, 1.0)
         if not self.side.size or not zeta.size:
-            return seen
+            return present
         far, which = nearest(zeta + 1j * zeta_m, self.across[:, 0] + 1j * self.across[:, 1])
-        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[which], seen))
+        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[which], present))
 
     def renewed(self, line: NeutralLine) -> Roles:
-        """The same, with what is across from each node where the ``line`` lies now."""
+        """The roles with pairs and sides of the present ``line``, one per node and partner."""
         nodes = np.arange(line.n + 1)
         i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
         zeta, zeta_m, _ = _partners(line, nodes.astype(float), i, j, 0.0, self)
         there = gap(line, line, one_side(1.0), 0.0, None, zeta, zeta_m)
-        # beyond an end a place has no side, and comes round it to either
+        # beyond an end a place has no side and may come around to either
         zeta, zeta_m, d = zeta[there.found], zeta_m[there.found], there.g[there.found]
         return Roles(self.later, self.ended, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
 
 
-def unseen(*, later: bool, ended: bool) -> Roles:
-    """Where nothing is known of any side."""
+def without_known_sides(*, later: bool, ended: bool) -> Roles:
+    """Roles without known sides."""
     return Roles(later, ended, np.empty((0, 2)), np.empty(0))
 
 
-def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None) -> Survey:
-    """The gap of a beam and itself wherever it is less than a few elements."""
+def survey_self(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None) -> Survey:
+    """Self-contact gap survey, wherever the gap is below a few elements."""
 
     def at(where: Array, guess: Array) -> Gap:
         return gap(line, line, roles.sides, T, tapers, where, guess, ended=roles.ended)
@@ -106,17 +106,17 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     if not places.size:
         return Survey(at, places, there, np.empty(0, dtype=bool), (), reach - T)
     order, follows = _sequences(i, there.zeta_m)
-    return survey(at, places[order], there.chosen(order), follows, knots, floor=rounded(line, line, T))
+    return survey(at, places[order], there.chosen(order), follows, knots, floor=gap_round_off(line, line, T))
 
 
 def _elements_near(line: NeutralLine, x: Array, reach: float) -> tuple[Ints, Ints]:
-    """Numbers of the points ``x`` (2, k) and, in order, of the elements that have a node in ``reach`` of each."""
+    """Pairs of point numbers of ``x`` (2, k) and elements with a node within ``reach``, in order."""
     if x.shape[1] * (line.n + 1) > _TABLE:
         near = KDTree(x.T).sparse_distance_matrix(KDTree(line.points.T), reach, output_type="ndarray")
         pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
         i, j = np.divmod(np.unique(pairs), line.n + 1)
         return i[j < line.n], j[j < line.n]
-    away_x, away_y = (np.subtract.outer(one, its) for one, its in zip(x, line.points, strict=True))
+    away_x, away_y = (np.subtract.outer(own, nodes) for own, nodes in zip(x, line.points, strict=True))
     near = away_x * away_x + away_y * away_y <= reach**2
     i, j = np.nonzero(near[:, :-1] | near[:, 1:])
     return i, j
@@ -125,12 +125,12 @@ def _elements_near(line: NeutralLine, x: Array, reach: float) -> tuple[Ints, Int
 def _partners(
     line: NeutralLine, zeta: Array, i: Ints, j: Ints, steepest: float, roles: Roles
 ) -> tuple[Array, Array, Ints]:
-    """Of places ``zeta`` (k,), by number ``i`` (m,), and elements ``j`` (m,) those that hold a partner.
+    """Partners of places ``zeta`` (k,) among candidate pairs of place ``i`` (m,) and element ``j`` (m,).
 
-    What is across from an end leans from there by an angle of up to the sine ``steepest``.
+    ``steepest`` is the sine of the largest lean at an end.
 
     Returns:
-        Their places ζ and about their partners' ζ_m, and the numbers of the places.
+        Places ζ, approximate partners ζ_m, and the numbers of the places.
     """
     before = j + 1.0 < zeta[i] if roles.later else j > zeta[i]
     i, j = i[before], j[before]
@@ -140,10 +140,10 @@ def _partners(
         return np.asarray(((x[:, i] - line.points[:, node]) * line.tangents[:, node]).sum(axis=0))
 
     here, there = f(j), f(j + 1)
-    # straight across from an end f is zero but for round-off, and for what the edge leans by
+    # opposite to an end f is zero up to round-off and lean
     for at_end, f_end, node in ((j == 0, here, 0), (j == line.n - 1, there, line.n)):
-        nothing = _NOTHING * line.longest**2 + steepest * np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
-        f_end[at_end] = np.where(np.abs(f_end[at_end]) <= nothing, 0.0, f_end[at_end])
+        tolerance = _NOTHING * line.longest**2 + steepest * np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
+        f_end[at_end] = np.where(np.abs(f_end[at_end]) <= tolerance, 0.0, f_end[at_end])
     least = (here >= 0.0) & (there <= 0.0) & (here > there)
     share = here / np.where(least, here - there, 1.0)
     if roles.ended:
@@ -154,20 +154,20 @@ def _partners(
 
 
 def _steepest(edge: Edge, line: NeutralLine) -> float:
-    """The largest sine of a lean, but for what changes the line's speed."""
+    """Largest sine of a lean, without the change of the line's speed."""
     return 2.0 * float(np.abs(edge.slope(np.array(edge.knots))).max()) / float(line.lengths.min())
 
 
 def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:
-    """Equal steps within every element, and the places straight across from the line's ends, by either side."""
+    """Equal steps within every element, and the places opposite to the line's ends, on either side."""
     even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
     x = line.at(even)[0]
-    more = [even]
+    places = [even]
     sides = (1.0,) if tapers is None else (1.0, -1.0)
     rays = [borders(line, None if tapers is None else tapers.second, side) for side in sides]
-    for one, end in product(rays, (0, line.n)):
-        at = one.zeta == end
-        point, tangent = plane(one.points[at]), plane(one.w[at])
+    for border, end in product(rays, (0, line.n)):
+        at = border.zeta == end
+        point, tangent = as_plane(border.points[at]), as_plane(border.w[at])
         ahead = ((x - point) * tangent).sum(axis=0)
         near = np.hypot(*(x - point)) < reach
         left = np.flatnonzero(near[:-1] & near[1:] & (ahead[:-1] * ahead[1:] < 0.0))
@@ -182,15 +182,15 @@ def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:
             step, zeta = np.abs(moved - zeta).max(), moved
             if step < 1e-12 * line.n:
                 break
-        more.append(zeta)
-    return np.unique(np.concatenate(more))
+        places.append(zeta)
+    return np.unique(np.concatenate(places))
 
 
 def _sequences(i: Ints, zeta_m: Array) -> tuple[Ints, NDArray[np.bool_]]:
-    """An order (k,) in which places that follow each other, with partners that do, stand together.
+    """Order (k,) that groups consecutive places with consecutive partners into sequences.
 
     Returns:
-        The order, and whether each in it is followed by the next of its sequence (k−1,).
+        The order, and (k−1,) True if an entry and the next are consecutive in a sequence.
     """
     number = np.argsort(i, kind="stable")
     first, stop = np.searchsorted(i[number], i + 1, side="left"), np.searchsorted(i[number], i + 1, side="right")

@@ -1,4 +1,4 @@
-"""What has been found in a state is found once: pure functions of states, remembered as long as the state is."""
+"""Memory of pure functions of a state, kept as long as the state."""
 
 from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
@@ -10,14 +10,14 @@ K = TypeVar("K", bound=Hashable)
 V = TypeVar("V")
 
 
-class Known(Generic[K, V]):
-    """By the state itself, and by a key that says what was asked."""
+class Memory(Generic[K, V]):
+    """Values by state and by a key of the function's other arguments."""
 
     def __init__(self) -> None:
         self._in: WeakKeyDictionary[State, dict[K, V]] = WeakKeyDictionary()
 
-    def found(self, z: State, key: K, find: Callable[[], V]) -> V:
-        """What is known of state ``z`` by the ``key``, found now if it is not."""
+    def recall(self, z: State, key: K, find: Callable[[], V]) -> V:
+        """The value for state ``z`` and ``key``, computed by ``find`` if unknown."""
         here = self._in.get(z)
         if here is None:
             here = self._in[z] = {}

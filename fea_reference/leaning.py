@@ -1,23 +1,24 @@
-"""The neutral line leans from its sections by the angle of shear: its tangents, and their derivatives.
+"""Tangents of the neutral line with shear, and their derivatives.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 θ       rotation of the section at a node
-γ       angle of shear, one per element: γ = −c·Δ, see :mod:`fea_reference.element`
+γ       shear angle, one per element: γ = −c·Δ, see :mod:`fea_reference.element`
 ψ       tangent angle of the neutral line at a node, θ + γ̄
-γ̄       mean of the γ beside a node; at a free or pinned end the one of the element there, at a welded end zero
-u       what an element's line goes by: (x₁, y₁, ψ₁, x₂, y₂, ψ₂, N)
+γ̄       mean γ of the elements at a node; at a free or pinned end γ of the end element, at a welded end zero
+u       unknowns of an element's line: (x₁, y₁, ψ₁, x₂, y₂, ψ₂, N)
 ======  =====================================================================================
 
-A line with the sections' rotations for tangents would wind about the nodes' chords by 0.1 γ L in every element.  Its
-slope would be wrong by γ at the nodes, and by γ/2 the other way between them: a place of contact would be wrong by γ
-over the curvature, up and down along every element and however short that is.  One tangent at a node, between the two
-that its elements have, keeps the line smooth; they differ as the shear force does from one element to the next.
+A line tangent to the sections' normals would oscillate about the chords by 0.1 γ L in every element. Its slope would
+deviate by γ at the nodes and by γ/2, of opposite sign, between them. A place of contact would then be wrong by γ over
+the curvature, alternately along every element, on any mesh. A single tangent per node, between the tangents of both
+elements, keeps the line smooth. The elements' tangents differ by the change of shear force.
 
-At a welded end the section's rotation is given, and with it the line's: a pressure beside a clamp turns the line there
-with a moment that is the clamp's, and handed on to the shear of one element it would be a force between clamp and
-contact, of first order in the element.  The same holds of an end that is pinned to what it may lie on.
+At a welded end the section's rotation is prescribed, and so is the line's tangent. The moment of a pressure beside
+the clamp then acts on the clamp. If the tangent followed the end element's shear, the moment would become a force
+between clamp and contact. The error would be of first order in the element. The same holds for an end pinned to its
+contact surface.
 """
 
 from dataclasses import dataclass
@@ -30,12 +31,12 @@ from fea_reference.hermite import Index
 from fea_reference.state import State
 
 _LINE = 7  # unknowns of an element's line
-_TANGENTS = (2, 5)  # of which these are tangent angles
+_TANGENTS = (2, 5)  # positions of the tangent angles among these
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """One beam: its ``part`` of all elements, their unknowns ``dofs`` (7, n), which of its two ends are ``welded``."""
+    """A beam: the slice ``part`` of all elements, their unknowns ``dofs`` (7, n), and True for ``welded`` ends (2)."""
 
     part: slice
     dofs: Index
@@ -57,13 +58,13 @@ def tangent_angles(elements: Elements, span: Span, z: State) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """From what lines go by, and a body's unknowns if there is one, to all unknowns, at k places.
+    """Chain rule from the unknowns of element lines, and of a body, to all unknowns, at k places.
 
     Attributes:
-        dofs: unknowns (M, k), the first m of them those of the lines' own elements and of the body, θ for ψ.
+        dofs: unknowns (M, k); the first m belong to the lines' own elements and the body, with θ in place of ψ.
         rows: which of the m are tangent angles ψ.
-        by: ∂γ̄ of each of the rows by the unknowns (rows, M, k); twice: second derivatives (rows, M, M, k).
-        shares: line, first of the six rows of M that an element's nodes have, and the element at every place (k,).
+        by: derivatives (rows, M, k) of γ̄ for every such row; twice: second derivatives (rows, M, M, k).
+        shares: line, first of the six rows of M for an element's nodes, and the element (k,) at every place.
     """
 
     dofs: Index
@@ -73,41 +74,44 @@ class Chain:
     shares: tuple[tuple[int, int, Index], ...]
 
     def gradient(self, local: Array) -> Array:
-        """By all unknowns (M, k) what is ``local`` (m, k) by the lines' own."""
-        every = np.zeros(self.dofs.shape)
-        every[: len(local)] = local
+        """Derivatives (M, k) by all unknowns from derivatives ``local`` (m, k) by the lines' unknowns."""
+        total = np.zeros(self.dofs.shape)
+        total[: len(local)] = local
         for row, by in zip(self.rows, self.by, strict=True):
-            every += local[row] * by
-        return every
+            total += local[row] * by
+        return total
 
     def hessian(self, local: Array, gradient: Array) -> Array:
-        """The same of second derivatives ``local`` (m, m, k), where the first are ``gradient`` (m, k)."""
+        """Second derivatives (M, M, k) by all unknowns, by the chain rule.
+
+        ``local`` (m, m, k) and ``gradient`` (m, k) are second and first derivatives by the lines' unknowns.
+        """
         m, size = len(gradient), self.dofs.shape
         half = np.zeros((m, *size))
         half[:, :m] = local
         for row, by in zip(self.rows, self.by, strict=True):
             half += local[:, row, None] * by
-        every = np.zeros((size[0], *size))
-        every[:m] = half
+        total = np.zeros((size[0], *size))
+        total[:m] = half
         for row, by, twice in zip(self.rows, self.by, self.twice, strict=True):
-            every += by[:, None] * half[row] + gradient[row] * twice
-        return every
+            total += by[:, None] * half[row] + gradient[row] * twice
+        return total
 
     def local(self, step: Array, m: int) -> Array:
-        """What a ``step`` (size,) of all unknowns is of the first m, tangent angles for rotations, (m, k)."""
-        every = step[self.dofs]
-        own = every[:m].copy()
+        """Step (m, k) of the lines' unknowns, with tangent angles for rotations, from a ``step`` (size,) of all."""
+        steps = step[self.dofs]
+        own = steps[:m].copy()
         for row, by in zip(self.rows, self.by, strict=True):
-            own[row] += (by * every).sum(axis=0)
+            own[row] += (by * steps).sum(axis=0)
         return own
 
 
 def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index, z: State) -> Chain:
-    """Of k places on one or two lines and of a body's unknowns ``body`` (0 or 3, k), in this order.
+    """Chain rule of k places on one or two lines and a body's unknowns ``body`` (0 or 3, k), in this order.
 
     Args:
         elements: of all beams.
-        lines: for each its beam, and the element of each place (k,) counted in the beam.
+        lines: beam, and element (k,) of every place counted in the beam, per line.
         body: may be empty.
         z: the state.
     """
@@ -115,7 +119,7 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
     shares = [(i, _LINE * i, e) for i, (_, e) in enumerate(lines)]
     leaning = [(i, line) for i, line in enumerate(lines) if elements.slip[:, line[0].part].any()]
     if not leaning:
-        return _upright(own, tuple(shares))
+        return _plain_chain(own, tuple(shares))
     size, k = len(own) + 12 * len(leaning), own.shape[1]
     rows, beside = [], [own]
     by, twice = np.zeros((2 * len(leaning), size, k)), np.zeros((2 * len(leaning), size, size, k))
@@ -125,7 +129,7 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
         slip = shear(elements, span.part.start + near.ravel(), span.dofs[:, near.ravel()], z)
         slip_by, slip_twice = slip.by.reshape(6, 3, k), slip.by_twice.reshape(6, 6, 3, k)
         for tangent in (0, 1):
-            one = 2 * number + tangent
+            number_of_tangent = 2 * number + tangent
             rows.append(_LINE * i + _TANGENTS[tangent])
             neighbour = near[2 * tangent]
             share = np.where(neighbour == e, 0.0, 0.5)
@@ -135,26 +139,26 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
             shares.append((i, row, neighbour))
             for begin, where, weight in ((_LINE * i, 1, own_share), (row, 2 * tangent, share)):
                 here = slice(begin, begin + 6)
-                by[one, here] = weight * slip_by[:, where]
-                twice[one, here, here] = weight * slip_twice[:, :, where]
+                by[number_of_tangent, here] = weight * slip_by[:, where]
+                twice[number_of_tangent, here, here] = weight * slip_twice[:, :, where]
     return Chain(np.concatenate(beside), tuple(rows), by, twice, tuple(shares))
 
 
 def own_chain(span: Span, e: Index) -> Chain:
-    """Of elements (k,) of a beam whose line has the sections' rotations for tangents: to their own unknowns."""
-    return _upright(span.dofs[:, e], ((0, 0, e),))
+    """Chain rule of elements (k,) of a beam with the sections' rotations as tangents."""
+    return _plain_chain(span.dofs[:, e], ((0, 0, e),))
 
 
 def sheared_chain(elements: Elements, span: Span, e: Index, z: State) -> Chain:
-    """Of elements (k,) of a beam whose lines lean from both of their sections by their own angle of shear."""
+    """Chain rule of separate elements (k,) of a beam, tangent at both ends by their own shear angle."""
     own = span.dofs[:, e]
     if not elements.slip[:, span.part].any():
-        return _upright(own, ((0, 0, e),))
+        return _plain_chain(own, ((0, 0, e),))
     slip = shear(elements, span.part.start + e, own, z)
     by, twice = np.zeros(own.shape), np.zeros((_LINE, *own.shape))
     by[:6], twice[:6, :6] = slip.by, slip.by_twice
     return Chain(own, _TANGENTS, np.stack([by, by]), np.stack([twice, twice]), ((0, 0, e),))
 
 
-def _upright(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
+def _plain_chain(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
     return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), shares)

@@ -1,31 +1,31 @@
-"""How far to go along a Newton step while a contact changes where it acts.
+"""Line search along a Newton step while contact zones change.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-p       the step's share of the motions; the multipliers and axial forces have theirs already
-α       the fraction of p that is gone
-φ'(α)   p·(unbalanced forces on the motions after α p): slope of the Lagrangian along the step
+p       the motions of the step; multipliers and axial forces take their full step
+α       fraction of p
+φ'(α)   p·(residual of the motions at α): slope of the Lagrangian along the step
 ======  =====================================================================================
 
-A zone of contact that the step closes or opens changes the stiffness, and full steps can swing between two
-zones for ever.  Along p the energy of a penalty is convex: where full length overshoots the least value, a
-root of φ' lies within it (Matthies and Strang, Int. J. Numer. Meth. Engng 14 (1979) 1613).
+A step that closes or opens a zone changes the stiffness, and full steps may oscillate between two zones for ever.
+Along p the energy of a penalty is convex: if the full step overshoots the minimum, φ' has a root within the step
+(Matthies and Strang, Int. J. Numer. Meth. Engng 14 (1979) 1613).
 """
 
 from collections.abc import Callable
 
 from fea_reference.system import System
 
-_OVERSHOT = 0.5  # of the slope at the start, that the slope at the end may have
+_OVERSHOT = 0.5  # times the initial slope: accepted slope at the end
 _TRIALS = 6
 
 
-def searched(after: Callable[[float], System], slope: Callable[[System], float], start: float) -> System:
-    """The system near the least energy along a step: after all of it, unless that overshoots.
+def line_search(after: Callable[[float], System], slope: Callable[[System], float], start: float) -> System:
+    """System near the energy minimum along a step: at the full step unless this overshoots.
 
     Args:
-        after: the system after a fraction of the step; slope: φ' of it; start: φ'(0).
+        after: the system after a fraction of the step; slope: φ' of a system; start: φ'(0).
     """
     system = after(1.0)
     end = slope(system)

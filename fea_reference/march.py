@@ -1,4 +1,8 @@
-"""Where the march stands, and one step of it: contacts and stops that close, penalties that tighten."""
+"""State of load stepping and a single step: contact closing, stop switching, penalty continuation.
+
+The stepped parameter is a load, a drive or a share of the assembly; λ is its value. ``load`` is its number in
+``Model.stepped``.
+"""
 
 from __future__ import annotations
 
@@ -11,82 +15,92 @@ from scipy.optimize import brentq
 from cprbm_scene.answer import Array, Critical, Ending, GoneOver
 from cprbm_scene.frozendict import frozendict
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, bend, way_to
+from fea_reference.advance import advance, path_terms, step_between
 from fea_reference.carrying import at_ends
 from fea_reference.contact import least_at_ends
 from fea_reference.contacts import (
     CLOSED,
-    against,
-    clear,
     least_gap,
-    looked_at,
-    open_in,
+    motion_before_contact,
+    motion_before_overlap,
+    open_contact,
     passed_through,
+    relative_motion,
     resting_pressure,
-    room,
     touch,
+    with_current_sides,
     zones_of,
 )
-from fea_reference.curvature import positive, softest
-from fea_reference.face import cut
+from fea_reference.curvature import all_positive, softest
+from fea_reference.face import tip_depth
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.off_a_corner import slipped_off
-from fea_reference.onward import Onward, onward
-from fea_reference.poised import poised
+from fea_reference.onward import PathTangent, path_tangent
+from fea_reference.poised import without_gap_round_off
 from fea_reference.settings import Settings
-from fea_reference.sinking import Depth, known_depths, sunk
-from fea_reference.slipping import gone_past
+from fea_reference.sinking import Depth, known_depths, with_predicted_depths
+from fea_reference.slipping import passed_end
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
-from fea_reference.yielding import FELT, POINT, ROUNDED, felt, in_points
+from fea_reference.yielding import POINT, ROUND_OFF_DEPTH, SIGNIFICANT, is_point_contact, penetration_effects
 
-_CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
-_AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
-_BENT = 0.3  # of what a step moves by its rate: the most that its change may add
-_TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
-_TIGHTEN = 100.0  # the most by which a penalty is raised at once
-_NARROW = 2.0  # the power of that for a contact in a point, whose depth can be foreseen
-_GENTLEST = 1.03  # the factor that is tried at last
+# rad (and lengths): largest difference between equilibrium and prediction; a larger one means another branch
+_MAX_CORRECTION = 0.2
+_MAX_STEP_RATIO = (
+    2.0  # times the last step: longest step for which the last step's change of tangent still helps the predictor
+)
+_MAX_HIGHER_TERMS = 0.3  # largest share of the first-order motion that the higher-order terms may add
+_MAX_ROTATION = 1.0  # rad: rotation of an element's end against its chord; the shallow-arch element is not valid beyond
+_TIGHTEN = 100.0  # largest factor for a penalty in a single increase
+_POINT_POWER = 2.0  # exponent of this factor for a contact in a point, where the penetration is predictable
+_LEAST_FACTOR = 1.03  # smallest factor, tried last
 _TIGHTENINGS = 40
-_FELT = 5.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
-_HELD = 200.0  # times the penetration allowed: what is deeper, as penalties cannot be tightened, is not held
+_EFFECT_FACTOR = (
+    5.0  # times the requested penetration: largest effect of a penetration on other forces and motions, as a share
+)
+_EXCESSIVE_DEPTH = (
+    200.0  # times the allowed penetration: deeper contacts are lost, as their penalties could not be raised
+)
 _SETTLINGS = 8
-_LED = 1e-5  # of a known pressure, that may be another than the one led with
-_NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
-_SINKING = 0.1  # of the thickness: an overlap that tight penalties are to press out on the way
-_DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
-_THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
-_AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
-_SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
-_SHARPENINGS = 3
-_SOFT = 0.1  # of what the elements can follow
-_PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
-_DIFFERENCE = 1e-4  # of a step: what rates of gaps are seen by
-_INSIDE = 0.01  # of these: how far within what counts as closed its place is sought
-_SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
-_AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
-_STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
-_STANDARD = 1e-4  # of elements that are as long as thick; at a tip that goes with the square of what it may be deep
-_FIRMER, _FIRMEST = 1e3, 1e9  # times at once, and what the elements can follow: where a penalty ends a branch early
-_EVEN = 0.03  # by which a penalty may differ from the one wanted
-_SAME = 1e-9  # by which the one of a circle may
-_POLISHINGS = 8  # tries after which a penetration below the one asked will do
-_IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
-_FALLS = (1.0, 2.0)  # in an area, and at a tip
-_SUNK = 0.3  # of how deep something may be and not have gone through: what is deeper is about to
-_STIFFER = 10.0  # times: the penalty with which the step is tried again then
+_LEAD_TOLERANCE = 1e-5  # relative change of the resting pressure above which the lead is computed again
+_NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # steps: distances at which a closing under tight penalties is sought
+_DEEP = 0.1  # thicknesses: penetration above which tight penalties have to push the beams apart first
+_PASSING_DEPTH = 1e-3  # shortest elements: additional penetration of a contact about to be passed through
+_LONGEST_PATH = 0.5  # thicknesses: longest motion within which no beam passes through another unnoticed
+_LIMIT_TOLERANCE = 1e-10  # rad: overrun of an angle limit at the closing of the stop
+_FINE_RESIDUAL = 1e-3  # times the accepted residual: aim at a station, where this is above round-off
+_FINE_ITERATIONS = 3
+_SOFT = 0.1  # times the stiffest penalty that the elements resolve
+_STOP_TENSION = 1e-9  # times the largest force or EI/length: tension of a stop at which the stop opens
+_DIFFERENCE = 1e-4  # steps: increment for finite-difference rates of gaps
+_INSIDE = 0.01  # closing tolerances: distance from the edge of the tolerance to the value sought
+_SWITCH_MARGIN = 1e-8  # rad, or forces: margin within which a stop counts as switched
+_AIM = 0.84  # times the requested penetration: aim for a pair of beams, so that the error follows a power law
+_STIFFEST = 1e9  # times the stiffest penalty that the elements resolve: upper bound at the penetration of the next line
+_STANDARD = 1e-4  # for elements as long as thick; at a tip the bound grows with the square of the ratio of penetrations
+# factor of a single increase, and upper bound over the stiffest, where a penalty ends a branch too early
+_FIRMER, _FIRMEST = 1e3, 1e9
+_PENALTY_TOLERANCE = 0.03  # accepted relative difference between a penalty and the wanted penalty
+_SAME = 1e-9  # the same for a circle
+_POLISHINGS = 8  # iterations after which a penetration below the requested one is accepted
+_POINT_EXPONENT = 1.5  # penalty ∝ penetration to the power −1.5 for a contact in a point
+_EXPONENTS = (1.0, 2.0)  # the same exponent in an area, and at a tip
+_PASSING_SHARE = (
+    0.3  # times the greatest penetration of a contact not yet passed through: a deeper one is about to pass
+)
+_STIFFER = 10.0  # factor of the penalty for the repeated step
 _STIFFENINGS = 3
-_LOOSER = (1.0, 0.5)  # of the way from tight penalties to the loosest, in orders of magnitude, that are tried
+_LOOSER = (1.0, 0.5)  # shares of the way, in orders of magnitude, from tight penalties to the loosest
 _NONE: Mapping[Contact, Touch] = frozendict()
 
 Trouble = tuple[Ending, str]
 
 
 class StoppedError(Exception):
-    """The march cannot go on; internal to this package: it becomes the answer's ending."""
+    """Load stepping cannot continue; internal to this package, turned into the ending of the answer."""
 
     def __init__(self, ending: Ending, sentence: str) -> None:
         super().__init__(sentence)
@@ -94,12 +108,12 @@ class StoppedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Behind:
-    """The last step, by which the value of what is stepped (number ``load``) changed ``by`` so much.
+class LastStep:
+    """The last step: parameter number ``load``, increment ``by``, higher-order terms of the path.
 
-    Over u from −1 where it began to 0 where it ended, the branch goes by u times its rate at the end, ``second`` u²
-    and ``third`` u³, (size,) each.  ``acting`` and ``contacts`` are what acted and which contacts were closed at its
-    beginning.
+    With u from −1 at the beginning of the step to 0 at the end, the path is u times the last tangent + ``second`` u²
+    + ``third`` u³, (size,) both. ``acting`` and ``contacts`` are the active constraints and the closed contacts at
+    the beginning.
     """
 
     load: int
@@ -111,8 +125,8 @@ class Behind:
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
-    """An end of a branch that nothing asked for and the march went on over: how it is told, and the record of it."""
+class BypassedPoint:
+    """A critical point passed although no continuation was requested: the sentence for the user and the record."""
 
     sentence: str
     record: GoneOver
@@ -120,18 +134,26 @@ class Left:
 
 @dataclass
 class March:
-    """Where the march stands: the state of the one loop that is allowed one.
+    """Current state of load stepping, the only mutable record of the solver.
 
-    ``values`` are those of all that is stepped, without units; ``acting`` which pins and stops do; ``penalties`` the
-    contacts that have closed so far, with their stiffness; ``closing`` the value of the stepped load or drive at which
-    each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the
-    ends of branches that have been passed, and ``left`` those that nothing asked for; ``iterations``
-    are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
-    tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on what is
-    rigid; ``loose`` whether penalties were loosened since they were tightened; ``course`` are the load, value and
-    curvature of the step before, where ends of branches are looked for and penalties are tight; ``known`` is the last
-    system whose smallest curvature was asked for, with that; ``behind`` is the last step, if it went along a branch;
-    ``firm`` the least penalties of contacts that have to be stiffer to this station than their depth asks.
+    Attributes:
+        open: contacts that have not closed yet.
+        values: dimensionless values of all stepped parameters.
+        acting: active pins and stops.
+        penalties: penalty of every contact that has closed so far.
+        closing: value of the stepped parameter at the first closing of a contact or stop, by name.
+        switched: value at the last switch of a stop, by name.
+        critical: critical points passed on request.
+        bypassed: critical points passed without request.
+        iterations: Newton iterations since the last station.
+        zones_far: True if zones moved too far between the last stations for tight penalties; the next station then
+            starts with loose penalties.
+        loosened: True if penalties were loosened after the last tightening.
+        known_curvature: last system with a computed smallest curvature, and this curvature.
+        last_step: the last step, if the branch continued along it.
+        previous_point: parameter number, value and curvature one step before, if watched and with tight penalties.
+        least_penalties: lower bounds of penalties up to the next station, by contact, above the bound from the
+            penetration.
     """
 
     model: Model
@@ -144,48 +166,51 @@ class March:
     closing: dict[str, float] = field(default_factory=dict)
     switched: dict[str, float] = field(default_factory=dict)
     critical: list[Critical] = field(default_factory=list)
-    left: list[Left] = field(default_factory=list)
+    bypassed: list[BypassedPoint] = field(default_factory=list)
     iterations: int = 0
-    far: bool = False
-    loose: bool = False
-    known: tuple[System, float] | None = None
-    behind: Behind | None = None
-    course: tuple[int, float, float] | None = None
-    firm: dict[str, float] = field(default_factory=dict)
+    zones_far: bool = False
+    loosened: bool = False
+    known_curvature: tuple[System, float] | None = None
+    last_step: LastStep | None = None
+    previous_point: tuple[int, float, float] | None = None
+    least_penalties: dict[str, float] = field(default_factory=dict)
 
-    def foregone(self, load: int) -> list[tuple[float, float]]:
-        """Value and curvature one step before, if that was one of the same ``load``."""
-        if self.course is None or self.course[0] != load or self.course[1] == self.values[load]:
+    def points_before(self, load: int) -> list[tuple[float, float]]:
+        """Value and curvature one step before, as a list; empty if the step had another parameter than ``load``."""
+        if self.previous_point is None or self.previous_point[0] != load or self.previous_point[1] == self.values[load]:
             return []
-        return [self.course[1:]]
+        return [self.previous_point[1:]]
 
     @property
     def curvature(self) -> float:
-        """The smallest curvature of the potential energy on the feasible directions, found once for every system."""
-        if self.known is None or self.known[0] is not self.system:
-            self.known = self.system, softest(self.model, self.system).curvature
-        return self.known[1]
+        """Smallest curvature of the potential energy on the feasible directions, computed once per system."""
+        if self.known_curvature is None or self.known_curvature[0] is not self.system:
+            self.known_curvature = self.system, softest(self.model, self.system).curvature
+        return self.known_curvature[1]
 
     @property
-    def minimum(self) -> bool:
-        """Whether that is positive."""
-        if self.known is None or self.known[0] is not self.system:
-            return positive(self.model, self.system)
-        return self.known[1] > 0.0
+    def is_minimum(self) -> bool:
+        """True if the smallest curvature is positive."""
+        if self.known_curvature is None or self.known_curvature[0] is not self.system:
+            return all_positive(self.model, self.system)
+        return self.known_curvature[1] > 0.0
 
     @property
-    def held(self) -> bool:
-        """Whether what presses is nowhere far deeper than it may be: where penalties could be tightened."""
+    def penetrations_bounded(self) -> bool:
+        """True if no penetration is far above the allowed one, so that penalties could be tightened."""
         allowed = self.allowed()
-        return all(one.penetration <= _HELD * allowed.get(one.pair, np.inf) for one in self.system.touches)
+        return all(
+            contact.penetration <= _EXCESSIVE_DEPTH * allowed.get(contact.pair, np.inf)
+            for contact in self.system.touches
+        )
 
     @property
-    def pull(self) -> float:
-        """The largest axial force."""
+    def largest_axial_force(self) -> float:
+        """Largest axial force."""
         return float(np.abs(self.system.z[self.model.element_dofs[6]]).max())
 
     def saved(self) -> March:
-        """A copy to come back to."""
+        """Copy of the state, for :meth:`restore`."""
         return replace(
             self,
             open=list(self.open),
@@ -194,11 +219,11 @@ class March:
             closing=dict(self.closing),
             switched=dict(self.switched),
             critical=list(self.critical),
-            left=list(self.left),
+            bypassed=list(self.bypassed),
         )
 
     def restore(self, saved: March) -> None:
-        """Go back to where a copy was taken, but for the iterations that have been spent; it can be done again."""
+        """Return to a saved state, except for the count of iterations; the copy stays usable."""
         self.open, self.values, self.system, self.acting = (
             list(saved.open),
             saved.values.copy(),
@@ -206,297 +231,326 @@ class March:
             saved.acting,
         )
         self.penalties, self.closing, self.switched = dict(saved.penalties), dict(saved.closing), dict(saved.switched)
-        self.far, self.loose, self.course = saved.far, saved.loose, saved.course
+        self.zones_far, self.loosened, self.previous_point = saved.zones_far, saved.loosened, saved.previous_point
 
     def rate(self, load: int, system: System | None = None) -> Array:
-        """dz/dvalue along the branch, here or in another ``system`` of it; zero where the tangent is singular."""
+        """Path tangent dz/dλ (size,) of this or another ``system``; zero if the stiffness matrix is singular."""
         system = system or self.system
         rate = system.solve(load_direction(self.model, load, system.z, self.acting))
         return np.zeros(self.model.size) if rate is None else rate
 
-    def onward(self, load: int, rate: Array, target: float) -> Onward:
-        """How the branch, whose ``rate`` (size,) that is but for what only touches yet, goes on to a ``target``."""
-        sense = float(np.sign(target - self.values[load]))
-        return onward(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
+    def path_tangent(self, load: int, rate: Array, target: float) -> PathTangent:
+        """Path tangent towards ``target`` with the contacts that begin to press.
 
-    def solve(self, load: int, value: float, z: State, begun: Mapping[Contact, Touch] = _NONE) -> System | None:
-        """Equilibrium at ``value`` near ``z``, with contacts that have ``begun`` there; None if there is none."""
+        ``rate`` (size,) is the path tangent without these contacts.
+        """
+        sense = float(np.sign(target - self.values[load]))
+        return path_tangent(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
+
+    def solve(
+        self, load: int, value: float, z: State, starting_contacts: Mapping[Contact, Touch] = _NONE
+    ) -> System | None:
+        """Equilibrium at ``value`` from the start ``z``; None if Newton's method fails.
+
+        ``starting_contacts`` begin to press in the start state.
+        """
         values = self.values.copy()
         values[load] = value
-        depths = self.depths() | {pair: one.penetration for pair, one in begun.items() if isinstance(pair, Pair)}
-        pushes = self.pushes() | {pair: one.pushes for pair, one in begun.items()}
+        depths = self.depths() | {
+            pair: contact.penetration for pair, contact in starting_contacts.items() if isinstance(pair, Pair)
+        }
+        pushes = self.pushes() | {pair: contact.pushes for pair, contact in starting_contacts.items()}
         solved = equilibrium(self.model, self.settings, self.penalties, values, z, self.acting, depths, pushes)
         self.iterations += solved.iterations
-        return solved.system if solved.converged else self._let_go(values, way_to(self.model, self.system.z, z))
+        return (
+            solved.system
+            if solved.converged
+            else self._without_pulling_contact(values, step_between(self.model, self.system.z, z))
+        )
 
-    def _let_go(self, values: Array, foreseen: Array) -> System | None:
-        """Equilibrium under ``values`` without one of the contacts that press here, but would pull a step further on.
+    def _without_pulling_contact(self, values: Array, predicted: Array) -> System | None:
+        """Equilibrium under ``values`` without a contact predicted to be in tension; None if there is none.
 
-        A beam that lies on something along itself comes off place by place: each iteration sets free what pulls, and
-        presses elsewhere.  Without the contact there is nothing to search, and what does not overlap then is right.
+        A beam lying on a surface lifts off place by place, and Newton's active set may cycle. A solution without the
+        contact is accepted if it has no overlap.
         """
-        for one in (one for one in self.system.touches if one.closed and one.foreseen(foreseen).sum() <= 0.0):
-            left = {pair: penalty for pair, penalty in self.penalties.items() if pair is not one.pair}
+        for contact in (
+            contact
+            for contact in self.system.touches
+            if contact.closed and contact.predicted_forces(predicted).sum() <= 0.0
+        ):
+            remaining = {pair: penalty for pair, penalty in self.penalties.items() if pair is not contact.pair}
             solved = equilibrium(
-                self.model, self.settings, left, values, self.system.z, self.acting, self.depths(), self.pushes()
+                self.model, self.settings, remaining, values, self.system.z, self.acting, self.depths(), self.pushes()
             )
             self.iterations += solved.iterations
-            if solved.converged and zones_of(self.model, one.pair, solved.system.z).least >= 0.0:
+            if solved.converged and zones_of(self.model, contact.pair, solved.system.z).least >= 0.0:
                 z = solved.system.z
                 return assemble(self.model, self.penalties, self.settings.quadrature, values, z, self.acting)
         return None
 
-    def step(self, load: int, value: float, onward: Onward) -> Trouble | None:
-        """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
+    def step(self, load: int, value: float, tangent: PathTangent) -> Trouble | None:
+        """Step to ``value``, or to the first change of a contact or stop; the reason of a failure, else None."""
         penalties = dict(self.penalties)
-        self.look()
+        self.update_sides()
         before, start = self.system.z, float(self.values[load])
-        predicted = advance(self.model, before, self._foreseen(load, value - start, onward.rate))
-        predicted, begun = self._begun(onward, penalties, predicted, value - start)
-        system = self.solve(load, value, predicted, begun)
+        predicted = advance(self.model, before, self._predicted_step(load, value - start, tangent.rate))
+        predicted, starting_contacts = self._with_point_forces(tangent, penalties, predicted, value - start)
+        system = self.solve(load, value, predicted, starting_contacts)
         for _ in range(_STIFFENINGS):
-            stiffer = self.stiffer(system) if system is not None else {}
+            stiffer = self.stiffer_penalties(system) if system is not None else {}
             if not stiffer:
                 break
             self.penalties.update(stiffer)
             system = self.solve(load, value, predicted)
-        if system is not None and self._sees_more_ends(system):
-            self.renew()
+        if system is not None and self._include_overlapping_ends(system):
+            self.reassemble()
             system = self.solve(load, value, predicted)
         if system is None:
             return (
                 Ending.STEP_TOO_SMALL,
-                f"Newton's method finds no equilibrium beyond {self.shown(load, start)}",
+                f"Newton's method finds no equilibrium beyond {self.described(load, start)}",
             )
-        if self.moved(system, predicted) > _CORRECTED:
+        if self.largest_motion(system, predicted) > _MAX_CORRECTION:
             return (
                 Ending.STEP_TOO_SMALL,
-                f"beyond {self.shown(load, start)} the nearest equilibrium is on another branch",
+                f"beyond {self.described(load, start)} the nearest equilibrium is on another branch",
             )
         touched = self.least_gap(system) < 0.0
-        changing = [stop for stop in self.model.stops if self.room(stop, system) < 0.0]
+        changing = [stop for stop in self.model.stops if self.stop_margin(stop, system) < 0.0]
         if touched:
             known = {start: self.system, value: system}
-            found = self._first_touch(load, known)
-            if found is None:
+            first_touch = self._first_touch(load, known)
+            if first_touch is None:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"no closing of a contact or stop found beyond {self.shown(load, start)}",
+                    f"the closing of a contact or stop beyond {self.described(load, start)} was not found",
                 )
-            value, system = found
-            before_it = self._seen_otherwise(known, value)
-            if before_it is not None:
-                value, system, touched = before_it, known[before_it], False
-            again = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
-            if again:
+            value, system = first_touch
+            side_change = self._value_before_side_change(known, value)
+            if side_change is not None:
+                value, system, touched = side_change, known[side_change], False
+            alternating = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
+            if alternating:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"beyond {self.shown(load, start)} {again[0]} neither holds nor lets go",
+                    f"beyond {self.described(load, start)} {alternating[0]} alternates between open and closed",
                 )
-        where = f"beyond {self.shown(load, start)}"
-        trouble = self.passed(before, system, where) or self._slipped(system, where)
+        where = f"beyond {self.described(load, start)}"
+        trouble = self.passing_failure(before, system, where) or self.slip_failure(system, where)
         if trouble is not None:
             return trouble
         self.values[load], self.system = value, system
-        self.change_places()
+        self.exchange_beams()
         if touched:
             self._close_tightly(load, value - start)
-            self.watch_what_touches(load, value - start)
-            self.switch(load, changing)
+            self.close_touching(load, value - start)
+            self.switch_stops(load, changing)
         return None
 
-    def _seen_otherwise(self, known: Mapping[float, System], value: float) -> float | None:
-        """The last value before that of a touch, if beams lie otherwise there than they were looked at; else None.
+    def _value_before_side_change(self, known: Mapping[float, System], value: float) -> float | None:
+        """Last value before ``value`` at which a pair of beams lies on another side than assumed, or None.
 
-        What touches begins with no overlap.  A place that comes to face another beam from the far side, round the end
-        of that, is as deep as it is away, and is no touch.
+        A closing starts without overlap. A point that faces another beam from the far side, around an end, has a gap
+        as negative as its distance and is no closing.
         """
         pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
         if not any(least_gap(self.model, pair, known[value].z) < -pair.scale for pair in pairs):
             return None
-        clear = [one for one in known if self.least_gap(known[one]) >= 0.0]
-        last = min(clear, key=lambda one: abs(one - value), default=value)
-        otherwise = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
-        return last if otherwise and last != value else None
+        without_overlap = [lam for lam in known if self.least_gap(known[lam]) >= 0.0]
+        last = min(without_overlap, key=lambda lam: abs(lam - value), default=value)
+        sides_differ = [open_contact(self.model, pair, known[last].z) for pair in self.open] != self.open
+        return last if sides_differ and last != value else None
 
-    def _begun(
-        self, onward: Onward, penalties: Mapping[Contact, Penalty], z: State, step: float
+    def _with_point_forces(
+        self, tangent: PathTangent, penalties: Mapping[Contact, Penalty], z: State, step: float
     ) -> tuple[State, dict[Contact, Touch]]:
-        """The state near ``z`` in which contacts in a point push as foreseen after a ``step`` of the value.
+        """Predicted state near ``z`` with the predicted point forces, and the contacts that begin to press.
 
-        And, in that, those that only touch before it.
+        ``step`` is the increment of λ.
         """
-        model, quadrature, way = self.model, self.settings.quadrature, step * onward.rate
-        pressing = [one for one in self.system.touches if one.push > 0.0]
-        known = known_depths(self.system, {one.pair: one.penetration for one in pressing}, self.pushes())
-        foreseen = {one.pair: one.foreseen(way) for one in pressing}
-        for pair, push in onward.pushes.items():
+        model, quadrature, motion = self.model, self.settings.quadrature, step * tangent.rate
+        pressing = [contact for contact in self.system.touches if contact.push > 0.0]
+        known = known_depths(self.system, {contact.pair: contact.penetration for contact in pressing}, self.pushes())
+        predicted = {contact.pair: contact.predicted_forces(motion) for contact in pressing}
+        for pair, push in tangent.pushes.items():
             known[pair] = Depth(self.settings.penetration * pair.scale, push * step)
-            foreseen[pair] = np.array([push * step])
-        z = sunk(model, penalties, quadrature, onward.system, z, foreseen, known)
-        begun = (touch(model, pair, penalties[pair], quadrature, z) for pair in onward.pushes)
-        return z, {one.pair: one for one in begun if one.closed}
+            predicted[pair] = np.array([push * step])
+        z = with_predicted_depths(model, penalties, quadrature, tangent.system, z, predicted, known)
+        starting_contacts = (touch(model, pair, penalties[pair], quadrature, z) for pair in tangent.pushes)
+        return z, {contact.pair: contact for contact in starting_contacts if contact.closed}
 
-    def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
-        """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
+    def step_record(self, load: int, before: March, rate: Array, ahead: Array) -> LastStep:
+        """Record of the step from ``before`` to the current state, with path tangents ``rate`` and ``ahead`` (size,).
 
-        By the states and rates at both ends under the penalties of the step: what tighter ones move them by is none of
-        its bend.
+        Both states have the penalties of the step: motions due to a later tightening do not belong to the path.
         """
         by = float(self.values[load] - before.values[load])
-        second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
-        return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
+        second, third = path_terms(self.model, before.system.z, self.system.z, (rate, ahead), by)
+        return LastStep(load, by, second, third, before.acting, frozenset(before.penalties))
 
-    def stiffer(self, system: System) -> dict[Contact, Penalty]:
-        """Stiffer penalties for what is too deep under those of now; none where all is as stiff as it may be.
+    def stiffer_penalties(self, system: System) -> dict[Contact, Penalty]:
+        """Stiffer penalties for contacts that are too deep; empty if all have their stiffest penalty.
 
-        A circle's penalty is never stiffer than at a station, where it is as stiff as the depth asks in a point.
+        A circle's penalty never exceeds its value at a station, determined by the penetration in a point.
         """
-        deep = {one: self.penalties[one].stiffness for one in _too_deep(self.model, system)}
-        wide = {one.pair for one in system.touches if isinstance(one.pair, Circle) and not in_points(one)}
-        limits = {one: one.stiffest if one in wide else np.inf for one in deep}
-        return {one: Penalty(min(_STIFFER * now, limits[one])) for one, now in deep.items() if now < limits[one]}
+        deep = {contact: self.penalties[contact].stiffness for contact in _too_deep(self.model, system)}
+        wide = {
+            contact.pair
+            for contact in system.touches
+            if isinstance(contact.pair, Circle) and not is_point_contact(contact)
+        }
+        limits = {contact: contact.stiffest if contact in wide else np.inf for contact in deep}
+        return {
+            contact: Penalty(min(_STIFFER * now, limits[contact]))
+            for contact, now in deep.items()
+            if now < limits[contact]
+        }
 
-    def _closes_more(self, system: System) -> bool:
-        """Whether something overlaps in a system that is open now: no step could be made from there."""
+    def _overlaps_more(self, system: System) -> bool:
+        """True if a contact that is open now overlaps in ``system``: no step could start from there."""
         gaps = zip(self.gaps(self.system), self.gaps(system), strict=True)
         return any(after < 0.0 <= before for before, after in gaps)
 
-    def _gone_through(self, system: System) -> bool:
-        """Whether under other penalties something rigid has been gone through that presses."""
+    def _passed_rigid_body(self, system: System) -> bool:
+        """True if ``system``, with other penalties, lies beyond a rigid body that presses now."""
         rigid = (pair for pair in self.penalties if isinstance(pair, Rigid))
         return any(passed_through(self.model, pair, self.system.z, system.z) for pair in rigid)
 
-    def _foreseen(self, load: int, step: float, rate: Array) -> Array:
-        """By what a step will move, (size,): to third order by the rate and the last step, if that tells."""
-        first, behind = step * rate, self.behind
-        if behind is None or behind.load != load or behind.acting is not self.acting:
+    def _predicted_step(self, load: int, step: float, rate: Array) -> Array:
+        """Predicted motion (size,) for a ``step`` in λ: third order if the last step applies, else first order."""
+        first, last_step = step * rate, self.last_step
+        if last_step is None or last_step.load != load or last_step.acting is not self.acting:
             return first
-        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(behind.by):
+        if last_step.contacts != frozenset(self.penalties) or not abs(step) <= _MAX_STEP_RATIO * abs(last_step.by):
             return first
-        u = step / behind.by
-        more = u**2 * behind.second + u**3 * behind.third
-        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
-        return first + more if bent <= _BENT * straight else first
+        u = step / last_step.by
+        higher = u**2 * last_step.second + u**3 * last_step.third
+        bent, straight = (float(np.abs(motion[self.model.moving]).max()) for motion in (higher, first))
+        return first + higher if bent <= _MAX_HIGHER_TERMS * straight else first
 
-    def passed(self, before: State, system: System, where: str) -> Trouble | None:
-        """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""
-        pressing = {one.pair for one in system.touches if one.closed}
+    def passing_failure(self, before: State, system: System, where: str) -> Trouble | None:
+        """Failure if bodies passed through each other, or an element turned too far, since ``before``; else None."""
+        pressing = {contact.pair for contact in system.touches if contact.closed}
         for pair in (*self.open, *self.penalties):
             if isinstance(pair, Face):
-                continue  # its straight way is one in the frame of its body
+                continue  # a Face is tested in the frame of its body, below
             least, touching = zones_of(self.model, pair, system.z).least, CLOSED * pair.scale
-            # of what does not press yet an overlap is on its way to be closed; of what has pressed, it has gone through
+            # an overlap of a contact that does not press yet is about to close; a contact that pressed has been passed
+            # through
             if pair in pressing or (abs(least) if pair in self.penalties else least) <= touching:
                 continue
             if self._overlapped_between(pair, before, system.z):
-                return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"
+                return Ending.BEAMS_CROSSED, f"{where} a beam passes through the opposite body in contact {pair.name}"
         turned = float(np.abs(system.elements.rotation).max())
-        if turned > _TURNED:
+        if turned > _MAX_ROTATION:
             return Ending.TURNED_TOO_FAR, f"{where} an element turns by {turned:.2f} rad: take more elements"
         for pair in (*self.open, *self.penalties):
             if passed_through(self.model, pair, before, system.z):
-                return Ending.BEAMS_CROSSED, f"{where} what touches in {pair.name} passes through each other"
+                return Ending.BEAMS_CROSSED, f"{where} a beam passes through the opposite body in contact {pair.name}"
         return None
 
-    def _slipped(self, system: System, where: str) -> Trouble | None:
-        """Whether an end that presses has come past that of another beam, or past a corner, on the way to a system."""
-        for one in self.system.touches:
-            if slipped_off(self.model, one, self.system.z, system.z):
-                return Ending.STEP_TOO_SMALL, f"{where} an end slips off a corner in {one.pair.name}"
-            if gone_past(self.model, one, self.system.z, system.z):
-                return Ending.STEP_TOO_SMALL, f"{where} an end slips off the other in {one.pair.name}"
+    def slip_failure(self, system: System, where: str) -> Trouble | None:
+        """Failure if a pressing end slipped off another beam's end or off a corner before ``system``; else None."""
+        for contact in self.system.touches:
+            if slipped_off(self.model, contact, self.system.z, system.z):
+                return Ending.STEP_TOO_SMALL, f"{where} a beam's end slips off a corner in contact {contact.pair.name}"
+            if passed_end(self.model, contact, self.system.z, system.z):
+                return (
+                    Ending.STEP_TOO_SMALL,
+                    f"{where} a beam's end slips off the other beam in contact {contact.pair.name}",
+                )
         return None
 
-    def room(self, stop: StopPart, system: System) -> float:
-        """How far a stop is from closing (rad), or one that holds from letting go, without units."""
+    def stop_margin(self, stop: StopPart, system: System) -> float:
+        """Margin (rad) of an open stop to its limit, or dimensionless margin of a closed stop to its opening."""
         if not self.acting.stopping:
             return np.inf
         limit = self.acting.limits.get(stop.name)
         if limit is None:
-            return stop.room(system.z)[0] + _AT_LIMIT
-        # the largest force may be the stop's own, which is of no size where it lets go
-        return stop.press(system.z, limit) / max(1.0, system.scale) + _PULLS
+            return stop.margin(system.z)[0] + _LIMIT_TOLERANCE
+        # the largest force may be the stop's own, which vanishes where the stop opens
+        return stop.press(system.z, limit) / max(1.0, system.scale) + _STOP_TENSION
 
-    def switch(self, load: int, changing: Iterable[StopPart]) -> None:
-        """Let those stops act, or act no more, that have arrived where they change."""
-        arrived = [stop for stop in changing if self.room(stop, self.system) <= _SWITCHED]
+    def switch_stops(self, load: int, changing: Iterable[StopPart]) -> None:
+        """Close or open the stops among ``changing`` that have reached their margin."""
+        arrived = [stop for stop in changing if self.stop_margin(stop, self.system) <= _SWITCH_MARGIN]
         for stop in arrived:
             self.switched[stop.name] = float(self.values[load])
-            self.turn(stop, load, self.system)
+            self.toggle_stop(stop, load, self.system)
         if arrived:
-            self.renew()
+            self.reassemble()
 
-    def turn(self, stop: StopPart, load: int, system: System) -> None:
-        """Let a stop act no more if it does, and otherwise at the limit that it is nearest to in a system."""
+    def toggle_stop(self, stop: StopPart, load: int, system: System) -> None:
+        """Open a closed stop; close an open stop at the limit nearest in ``system``."""
         if stop.name in self.acting.limits:
             self.acting = self.acting.released(stop.name)
         else:
-            self.acting = self.acting.stopped(stop.name, stop.room(system.z)[1])
+            self.acting = self.acting.stopped(stop.name, stop.margin(system.z)[1])
             self.closing.setdefault(stop.known_as, self.value(load))
 
-    def act(self, acting: Acting) -> None:
-        """Let other pins and stops act, without moving."""
+    def constrain(self, acting: Acting) -> None:
+        """Change the active constraints without motion."""
         self.acting = acting
-        self.renew()
+        self.reassemble()
 
-    def renew(self) -> None:
-        """The system of what acts and presses now, in the same state."""
+    def reassemble(self) -> None:
+        """Assemble the system again with the current constraints and penalties, in the same state."""
         self.system = assemble(
             self.model, self.penalties, self.settings.quadrature, self.values, self.system.z, self.acting
         )
 
-    def look(self) -> None:
-        """See anew on which of their own sides beams lie, and on which of each other's while they are apart."""
+    def update_sides(self) -> None:
+        """Update the sides of all open contacts, and the sides of self-contacts, from the current state."""
         model, z = self.model, self.system.z
-        self.open = [open_in(model, pair, z) for pair in self.open]
-        self.penalties = {looked_at(model, pair, z): penalty for pair, penalty in self.penalties.items()}
+        self.open = [open_contact(model, pair, z) for pair in self.open]
+        self.penalties = {with_current_sides(model, pair, z): penalty for pair, penalty in self.penalties.items()}
 
     def value(self, load: int) -> float:
-        """Of what is stepped, SI."""
+        """Value of a stepped parameter in SI units."""
         return float(self.values[load]) * self.model.stepped[load].unit
 
     def _overlapped_between(self, pair: Contact, before: State, after: State) -> bool:
-        """Whether a contact that is open after a step overlaps on the straight way there, deeper than before.
+        """True if an open contact overlaps on the straight way between two states, deeper than before.
 
-        An overlap deeper than some elements is taken for the far side of a bent beam, so that a beam that has gone
-        past the end of another in one step may lie open behind it.
+        An overlap deeper than a few elements counts as the far side of a bent beam. A beam that passes the end of
+        another in a single step may therefore end open behind the other beam.
         """
-        way = after.values - before.values
-        moved = float(np.abs(way[self.model.moving]).max())
+        path = after.values - before.values
+        largest_motion = float(np.abs(path[self.model.moving]).max())
         least = zones_of(self.model, pair, before).least
-        if least > 2.0 * moved:
+        if least > 2.0 * largest_motion:
             return False
-        deepest = least - _DEEPER * self._finest if least < 0.0 else 0.0
+        deepest = least - _PASSING_DEPTH * self._shortest_element if least < 0.0 else 0.0
         thick = min(pair.distance, pair.scale) if isinstance(pair, Pair) else 0.0
-        parts = max(2, int(np.ceil(moved / max(self._finest, _THROUGH * thick))))
-        pace = against(self.model, pair, before, after) / parts
+        parts = max(2, int(np.ceil(largest_motion / max(self._shortest_element, _LONGEST_PATH * thick))))
+        pace = relative_motion(self.model, pair, before, after) / parts
 
         def overlaps(first: int, last: int) -> bool:
-            """Between two of the parts' ends; from where there is room for the whole way to either, nothing does."""
+            """Recursive bisection between two subdivision points; a gap larger than the motion excludes overlap."""
             if last - first < 2:
                 return False
             middle = (first + last) // 2
-            state = State.of(before.values + middle / parts * way)
-            if room(self.model, pair, state) > pace * (last - middle):
+            state = State.of(before.values + middle / parts * path)
+            if motion_before_contact(self.model, pair, state) > pace * (last - middle):
                 return False
             if zones_of(self.model, pair, state).least < deepest:
                 return True
-            if clear(self.model, pair, state) > pace * (last - middle):
+            if motion_before_overlap(self.model, pair, state) > pace * (last - middle):
                 return False
             return overlaps(first, middle) or overlaps(middle, last)
 
         return overlaps(0, parts)
 
     @property
-    def _finest(self) -> float:
+    def _shortest_element(self) -> float:
         return min(float(self.model.line(beam, self.model.start).lengths.min()) for beam in self.model.beams)
 
     def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
-        """The value at which the least gap of what may change is zero, on the equilibria where it has not.
+        """Value and equilibrium at the first zero of a gap or stop margin; None if none is found.
 
-        ``known`` are two equilibria by their values, one before and one beyond it.  Sought is where one of the gaps is
-        zero, which is smooth, beginning with the one that comes first on a straight line.
+        ``known`` has two equilibria by value, before and beyond the zero, and gets all further ones. The root of a
+        single smooth gap is sought, first of the gap with the earliest zero on a straight line.
         """
 
         def gaps(value: float) -> list[float]:
@@ -509,12 +563,12 @@ class March:
             return self.gaps(known[value])
 
         def sought(value: float, which: int) -> float:
-            # what is as near counts as closed; beyond it an end without thickness would be on the other side, and so
-            # what is aimed at is not its very edge
+            # a gap within half the closing tolerance counts as zero; the aim lies inside the tolerance, because beyond
+            # its edge an end without thickness would be on the other side
             gap = gaps(value)[which]
-            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap - _INSIDE * arrived[which]
+            return 0.0 if 0.0 <= gap <= 0.5 * tolerances[which] else gap - _INSIDE * tolerances[which]
 
-        arrived = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
+        tolerances = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCH_MARGIN for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
         xtol = 1e-11 * max(abs(clear), abs(beyond))
         try:
@@ -522,7 +576,7 @@ class March:
                 pairs = list(zip(gaps(clear), gaps(beyond), strict=True))
                 first = min((i for i, pair in enumerate(pairs) if pair[1] < 0.0), key=lambda i: _straight(*pairs[i]))
                 root = float(brentq(sought, clear, beyond, (first,), xtol=xtol, rtol=1e-11))
-                if gaps(root)[first] > arrived[first]:  # a jump: overlap that is not seen before it has some size
+                if gaps(root)[first] > tolerances[first]:  # a jump: the overlap is visible only beyond a certain size
                     over = [value for value in known if gaps(value)[first] <= 0.0]
                     root = over[int(np.argmin(np.abs(np.array(over) - root)))]
                 if min((*gaps(root)[:first], *gaps(root)[first + 1 :]), default=0.0) >= 0.0:
@@ -533,18 +587,18 @@ class March:
         return None
 
     def _between(self, load: int, low: tuple[float, System], high: tuple[float, System], value: float) -> State:
-        """The state at a ``value`` between two equilibria with theirs, to third order by their rates."""
+        """Predicted state at a ``value`` between two equilibria, a Hermite cubic from their path tangents."""
         (start, before), (end, after) = low, high
         rates = self.rate(load, before), self.rate(load, after)
         u = (value - end) / (end - start)
-        second, third = bend(self.model, before.z, after.z, rates, end - start)
+        second, third = path_terms(self.model, before.z, after.z, rates, end - start)
         return advance(self.model, after.z, (value - end) * rates[1] + u**2 * second + u**3 * third)
 
-    def _close_tightly(self, load: int, way: float) -> None:
-        """Where a contact or stop has closed, tighten the others and find again where it does.
+    def _close_tightly(self, load: int, increment: float) -> None:
+        """Tighten the other penalties after a closing and locate the closing again.
 
-        What sinks into loose penalties closes elsewhere.  ``way`` is that of the step.  If nothing is found, an open
-        contact stays open.
+        Penetration under loose penalties shifts a closing. ``increment`` is the step in λ. Without a new location an
+        open contact stays open.
         """
         loose = dict(self.penalties)
         self.tighten()
@@ -552,57 +606,58 @@ class March:
             return
         value, gap = float(self.values[load]), self.least_gap(self.system)
         for share in _NEARBY:
-            other = value + np.copysign(share, gap) * way
+            other = value + np.copysign(share, gap) * increment
             beyond = self.solve(load, other, advance(self.model, self.system.z, (other - value) * self.rate(load)))
             if beyond is None:
                 return
             if self.least_gap(beyond) * gap <= 0.0:
-                found = self._first_touch(load, {value: self.system, other: beyond})
-                if found is not None:
-                    self.values[load], self.system = found
+                closing = self._first_touch(load, {value: self.system, other: beyond})
+                if closing is not None:
+                    self.values[load], self.system = closing
                 return
 
     def gaps(self, system: System) -> list[float]:
-        """Of the open contacts, and how far stops are from changing."""
+        """Gaps of all open contacts, then margins of all stops."""
         gaps = [least_gap(self.model, pair, system.z) for pair in self.open]
-        return [*gaps, *(self.room(stop, system) for stop in self.model.stops)]
+        return [*gaps, *(self.stop_margin(stop, system) for stop in self.model.stops)]
 
     def least_gap(self, system: System) -> float:
-        """The least of them."""
+        """The least value of :meth:`gaps`."""
         return min(self.gaps(system), default=np.inf)
 
-    def watch_what_touches(self, load: int, way: float = 0.0) -> None:
-        """Give a penalty to every open contact whose gap has vanished, at the end of a step by a ``way``."""
+    def close_touching(self, load: int, increment: float = 0.0) -> None:
+        """Close every open contact with a vanishing gap; ``increment`` is the last step in λ."""
         z = self.system.z
         closing = [p for p in self.open if least_gap(self.model, p, z) <= CLOSED * p.scale]
         for pair in closing:
             self.open.remove(pair)
-            # an end that touches is to be the first beam's
+            # an end that touches has to belong to the first beam
             unseen = zones_of(self.model, pair, z).least > CLOSED * pair.scale
-            closed = pair.about() if unseen and isinstance(pair, Pair) else pair
+            closed = pair.exchanged() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
-            left = self._left(load, pair, way) * self.model.stepped[load].unit
-            self.closing.setdefault(pair.name, self.value(load) + left)
+            remainder = self._increment_to_zero_gap(load, pair, increment) * self.model.stepped[load].unit
+            self.closing.setdefault(pair.name, self.value(load) + remainder)
         if closing:
-            self.renew()
+            self.reassemble()
 
-    def _left(self, load: int, pair: Contact, way: float) -> float:
-        """How far, at the rate of now, a gap is from zero that a step by a ``way`` has closed but for a tolerance."""
-        step = _DIFFERENCE * way
-        moved = advance(self.model, self.system.z, step * self.rate(load))
-        here, there = (least_gap(self.model, pair, z) for z in (self.system.z, moved))
-        return step * here / (here - there) if 0.0 < here < (here - there) / _DIFFERENCE else 0.0
+    def _increment_to_zero_gap(self, load: int, pair: Contact, increment: float) -> float:
+        """Increment of λ to the exact zero of a gap within the closing tolerance, by the current rate of the gap."""
+        step = _DIFFERENCE * increment
+        moved_state = advance(self.model, self.system.z, step * self.rate(load))
+        here, gap_there = (least_gap(self.model, pair, z) for z in (self.system.z, moved_state))
+        return step * here / (here - gap_there) if 0.0 < here < (here - gap_there) / _DIFFERENCE else 0.0
 
     def loosen(self, *kinds: type[Contact]) -> bool:
-        """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
+        """Lower the penalties of contacts of the given ``kinds``, as far as possible; True on success.
 
-        Returns whether it could be done: not where that sinks in too far, slips or lets something overlap that is open.
-        Most pairs of beams touch in a point, whose zone is found all the same.
+        Zone ends move by a layer's width per iteration, so that loose penalties move them faster. A failure is an
+        excessive penetration, a slip or a new overlap. Most pairs of beams touch in a point, whose zone is found
+        anyway.
         """
         return any(self._loosened(kinds, share) for share in _LOOSER)
 
     def _loosened(self, kinds: tuple[type[Contact], ...], share: float) -> bool:
-        """The same by a ``share`` of the way, in orders of magnitude."""
+        """Lower penalties by a ``share`` of the way to the loosest, in orders of magnitude; True on success."""
         looser = {
             pair: Penalty(now.stiffness ** (1.0 - share) * pair.loosest**share)
             if isinstance(pair, kinds) and pair.loosest < now.stiffness
@@ -615,184 +670,203 @@ class March:
             self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        if not solved.converged or _too_deep(self.model, solved.system) or self._closes_more(solved.system):
+        if not solved.converged or _too_deep(self.model, solved.system) or self._overlaps_more(solved.system):
             return False
-        there = self._gone_through(solved.system) or self._slipped(solved.system, "") is not None
-        if self.moved(solved.system, self.system.z) <= _CORRECTED and not there:
-            self.system, self.penalties, self.loose = solved.system, looser, True
-            self.change_places()
+        contact_lost = self._passed_rigid_body(solved.system) or self.slip_failure(solved.system, "") is not None
+        if self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION and not contact_lost:
+            self.system, self.penalties, self.loosened = solved.system, looser, True
+            self.exchange_beams()
             return True
         return False
 
-    def change_places(self) -> None:
-        """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen.
+    def exchange_beams(self) -> None:
+        """Exchange the beams of a pair where an end of the second presses.
 
-        Where ends of the first press as well, each beam is to carry the zones at its own ends, and only as long as both
-        press: an end that comes to stand upright on the other beam is one of which that lies on both sides.
+        The gap function sees ends of the first beam only. If ends of both beams press, the zones at an end are
+        integrated along the beam of this end. The pair returns to a single integral when only one beam's ends press.
         """
-        for one in self.system.touches:
-            pair, lacks = one.pair, one.lacks
+        for contact in self.system.touches:
+            pair, missing_share = contact.pair, contact.missing_share
             if not isinstance(pair, Pair) or pair.roles is not None:
                 continue
-            if pair.carried and one.closed and lacks <= LACKING and (alone := self._alone(one, pair)) is not None:
-                solved = self._instead(pair, alone)
-                if solved is not None and all(found.lacks <= LACKING for found in solved[0].touches):
+            if (
+                pair.carried
+                and contact.closed
+                and missing_share <= LACKING
+                and (single := self._as_single_integral(contact, pair)) is not None
+            ):
+                solved = self._with_replaced_pair(pair, single)
+                if solved is not None and all(renewed.missing_share <= LACKING for renewed in solved[0].touches):
                     self.system, self.penalties = solved
                 continue
-            about = pair.about()
+            about = pair.exchanged()
             for other in (about, replace(pair, carried=pair.ends_m), replace(about, carried=about.ends_m)):
-                if lacks <= LACKING:
+                if missing_share <= LACKING:
                     break
-                if other != pair and (solved := self._instead(pair, other)) is not None:
-                    less = next((found.lacks for found in solved[0].touches if found.pair == other), 0.0)
-                    if less < lacks:
-                        (self.system, self.penalties), pair, lacks = solved, other, less
+                if other != pair and (solved := self._with_replaced_pair(pair, other)) is not None:
+                    reduced_share = next(
+                        (renewed.missing_share for renewed in solved[0].touches if renewed.pair == other), 0.0
+                    )
+                    if reduced_share < missing_share:
+                        (self.system, self.penalties), pair, missing_share = solved, other, reduced_share
 
-    def _sees_more_ends(self, system: System) -> bool:
-        """Let closed pairs see what in a system overlaps of ends that their view leaves out; whether any did.
+    def _include_overlapping_ends(self, system: System) -> bool:
+        """Include beam ends that overlap in ``system`` but are missing in the pair's integral; True if there are any.
 
-        Along the other beam such an end is met at an angle, later and deeper than it meets that one's side.
+        Measured along the other beam, such an end is oblique: its contact would start later and deeper than normal to
+        the beam's side.
         """
-        more: dict[Contact, Contact] = {}
-        for one in system.touches:
-            pair, z = one.pair, system.z
-            if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not one.closed:
+        extended: dict[Contact, Contact] = {}
+        for contact in system.touches:
+            pair, z = contact.pair, system.z
+            if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not contact.closed:
                 continue
             last, last_m = (self.model.line(self.model.beams[i], z).n for i in (pair.first, pair.second))
-            if at_ends(one.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
+            if at_ends(contact.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
                 continue
-            more[pair] = replace(pair, carried=pair.ends_m) if at_ends(one.zones.intervals, last) else pair.about()
-        self.penalties = {more.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
-        return bool(more)
+            extended[pair] = (
+                replace(pair, carried=pair.ends_m) if at_ends(contact.zones.intervals, last) else pair.exchanged()
+            )
+        self.penalties = {extended.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
+        return bool(extended)
 
-    def _alone(self, one: Touch, pair: Pair) -> Pair | None:
-        """A pair as that beam alone sees it whose ends press; None where ends of both do."""
+    def _as_single_integral(self, contact: Touch, pair: Pair) -> Pair | None:
+        """The pair as integrated along the only beam with pressing ends; None if ends of both beams press."""
         last, last_m = (self.model.line(self.model.beams[i], self.system.z).n for i in (pair.first, pair.second))
-        if not at_ends(one.zones.intervals, last):
-            return pair.about()
-        return None if at_ends(one.zones.zeta_m, last_m) else replace(pair, carried=())
+        if not at_ends(contact.zones.intervals, last):
+            return pair.exchanged()
+        return None if at_ends(contact.zones.zeta_m, last_m) else replace(pair, carried=())
 
-    def _instead(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
-        """The equilibrium with a pair that is seen in an ``other`` way, and its penalties, if it is the same."""
-        penalties = {other if one == pair else one: penalty for one, penalty in self.penalties.items()}
-        depths = {other if one == pair else one: depth for one, depth in self.depths().items()}
-        pushes = {one: push for one, push in self.pushes().items() if one != pair}
+    def _with_replaced_pair(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
+        """Equilibrium and penalties with ``pair`` replaced by ``other``; None if the state would change."""
+        penalties = {other if key == pair else key: penalty for key, penalty in self.penalties.items()}
+        depths = {other if key == pair else key: depth for key, depth in self.depths().items()}
+        pushes = {key: push for key, push in self.pushes().items() if key != pair}
         solved = equilibrium(
             self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
         )
         self.iterations += solved.iterations
-        if not solved.converged or self.moved(solved.system, self.system.z) > _CORRECTED:
+        if not solved.converged or self.largest_motion(solved.system, self.system.z) > _MAX_CORRECTION:
             return None
         return solved.system, penalties
 
     def zones(self) -> dict[Contact, Array]:
-        """Where the zones on what is rigid begin and end, (2,) each."""
+        """First and last place ζ of every closed contact with a rigid body, (2,)."""
         return {
-            one.pair: np.array([one.zones.intervals.min(), one.zones.intervals.max()])
-            for one in self.system.touches
-            if isinstance(one.pair, Rigid) and one.closed
+            contact.pair: np.array([contact.zones.intervals.min(), contact.zones.intervals.max()])
+            for contact in self.system.touches
+            if isinstance(contact.pair, Rigid) and contact.closed
         }
 
     def tighten(self) -> None:
-        """Change penalties, each time from the last equilibrium, until each leaves the penetration that it aims at.
+        """Penalty continuation: change penalties until every contact has its intended penetration.
 
-        Contacts in a point begin at the depth at which they push as before, so that it takes a few iterations however
-        much is changed at once.  Those of beams are held there meanwhile: another one that moves by more than they are
-        deep would open them, or make of the overlap a force thousands of times their own.
+        A contact in a point starts at a depth with the same force, which saves iterations of a large change. Such
+        pairs of beams are held active meanwhile: a motion above their depth would open them or multiply their force.
         """
-        self.loose = False
+        self.loosened = False
         most = _TIGHTEN
         falls: dict[Contact, float] = {}
         for tries in range(_TIGHTENINGS):
             allowed = self.allowed()
             factors = {
-                one.pair: self._wanted(one, falls.get(one.pair, _IN_A_POINT), allowed.get(one.pair))
-                for one in self.system.touches
+                contact.pair: self._penalty_factor(
+                    contact, falls.get(contact.pair, _POINT_EXPONENT), allowed.get(contact.pair)
+                )
+                for contact in self.system.touches
             }
-            pressures = {one.pair: resting_pressure(self.model, one, self.system.z) for one in self.system.touches}
+            pressures = {
+                contact.pair: resting_pressure(self.model, contact, self.system.z) for contact in self.system.touches
+            }
             done = all(
-                self._will_do(one, factors[one.pair], tries, allowed.get(one.pair)) for one in self.system.touches
+                self._penalty_accepted(contact, factors[contact.pair], tries, allowed.get(contact.pair))
+                for contact in self.system.touches
             )
-            if done and not self._misled(pressures):
+            if done and not self._leads_outdated(pressures):
                 return
             tighter = dict(self.penalties)
             depths: dict[Contact, float] = {}
-            held: dict[Contact, float] = {}
-            for one in self.system.touches:
-                narrow = one.closed and np.ptp(one.zones.intervals) < POINT
-                limit = most**_NARROW if narrow else most
-                factor = min(max(factors[one.pair], 1.0 / limit), limit)
-                stiffness = factor * self.penalties[one.pair].stiffness
-                tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
-                depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
-                if narrow and isinstance(one.pair, Pair):
-                    held[one.pair] = depths[one.pair]
+            held_depths: dict[Contact, float] = {}
+            for contact in self.system.touches:
+                narrow = contact.closed and np.ptp(contact.zones.intervals) < POINT
+                limit = most**_POINT_POWER if narrow else most
+                factor = min(max(factors[contact.pair], 1.0 / limit), limit)
+                stiffness = factor * self.penalties[contact.pair].stiffness
+                tighter[contact.pair] = Penalty(stiffness, pressures[contact.pair] / stiffness)
+                depths[contact.pair] = contact.penetration * factor ** (-1.0 / falls.get(contact.pair, _POINT_EXPONENT))
+                if narrow and isinstance(contact.pair, Pair):
+                    held_depths[contact.pair] = depths[contact.pair]
             pushes = self.pushes()
             known = known_depths(self.system, depths, pushes)
-            z = sunk(self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held, pushes)
+            z = with_predicted_depths(
+                self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known
+            )
+            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held_depths, pushes)
             self.iterations += solved.iterations
-            near = solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED
-            if near and not self._gone_through(solved.system):
-                falls = self._falls(solved.system, tighter)
+            near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
+            if near and not self._passed_rigid_body(solved.system):
+                falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
-                if most <= _GENTLEST:
-                    return  # the next try would be this one again
+                if most <= _LEAST_FACTOR:
+                    return  # the next attempt would be identical
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
-                most = max(min(most, tried) ** 0.4, _GENTLEST)
+                most = max(min(most, tried) ** 0.4, _LEAST_FACTOR)
 
-    def firmer(self, name: str) -> bool:
-        """Hold a contact by a far stiffer penalty as far as the station; whether that could be done."""
+    def raise_penalty(self, name: str) -> bool:
+        """Hold a contact by a far stiffer penalty up to the next station; True if this was possible."""
         pair = next(pair for pair in self.penalties if pair.name == name)
         stiffness = _FIRMER * self.penalties[pair].stiffness
         if stiffness > _FIRMEST * pair.stiffest:
             return False
-        self.firm[name] = stiffness
+        self.least_penalties[name] = stiffness
         self.tighten()
-        return self.penalties[pair].stiffness >= (1.0 - _EVEN) * stiffness
+        return self.penalties[pair].stiffness >= (1.0 - _PENALTY_TOLERANCE) * stiffness
 
-    def soft(self) -> bool:
-        """Whether something presses by a penalty far from as stiff as the elements can follow."""
+    def has_soft_penalty(self) -> bool:
+        """True if a closed contact has a penalty far below the stiffest that the elements resolve."""
         return any(
-            one.closed and self.penalties[one.pair].stiffness < _SOFT * one.pair.stiffest for one in self.system.touches
+            contact.closed and self.penalties[contact.pair].stiffness < _SOFT * contact.pair.stiffest
+            for contact in self.system.touches
         )
 
-    def sunk(self) -> bool:
-        """Whether beams have sunk so far into the penalties of a way that a further step might bring them through."""
-        return self.cut() or any(
-            isinstance(one.pair, Pair) and one.penetration > _SINKING * one.pair.scale for one in self.system.touches
+    def has_deep_pair(self) -> bool:
+        """True if contacts are so deep under the current penalties that the next step might pass through."""
+        return self.has_deep_tip() or any(
+            isinstance(contact.pair, Pair) and contact.penetration > _DEEP * contact.pair.scale
+            for contact in self.system.touches
         )
 
-    def cut(self) -> bool:
-        """Whether tips of what is rigid have: on those that are sharp no step may find an equilibrium any more."""
-        faces = (one.pair for one in self.system.touches if isinstance(one.pair, Face) and one.closed)
-        return any(cut(self.model, face, self.system.z) > _SINKING * face.scale for face in faces)
+    def has_deep_tip(self) -> bool:
+        """True if a tip of a rigid edge has cut deep into a beam: no further step may find an equilibrium there."""
+        faces = (contact.pair for contact in self.system.touches if isinstance(contact.pair, Face) and contact.closed)
+        return any(tip_depth(self.model, face, self.system.z) > _DEEP * face.scale for face in faces)
 
     def settle(self, load: int) -> None:
-        """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.
+        """Tighten penalties and switch stops until both are consistent.
 
-        Beside an end that a stop holds on an edge, the stop and the pressure share a moment by what penalties give way.
+        Beside an end held on an edge, the stop and the contact pressure share a moment in proportion to their
+        stiffness.
         """
         for _ in range(_SETTLINGS):
             self.tighten()
             if self._close_what_overlaps(load):
                 continue
-            changing = [stop for stop in self.model.stops if self.room(stop, self.system) < 0.0]
+            changing = [stop for stop in self.model.stops if self.stop_margin(stop, self.system) < 0.0]
             if not changing:
                 return
             before, closing = self.acting, dict(self.closing)
             for stop in changing:
-                self.turn(stop, load, self.system)
+                self.toggle_stop(stop, load, self.system)
             system = self.solve(load, float(self.values[load]), self.system.z)
-            if system is None or self.moved(system, self.system.z) > _CORRECTED:
+            if system is None or self.largest_motion(system, self.system.z) > _MAX_CORRECTION:
                 self.acting, self.closing = before, closing
                 return
             self.system = system
 
     def _close_what_overlaps(self, load: int) -> bool:
-        """Close open contacts that overlap with tight penalties and did not with loose ones; whether any did."""
+        """Close open contacts that overlap under tight penalties only; True if there are any."""
         z = self.system.z
         closing = [pair for pair in self.open if least_gap(self.model, pair, z) < 0.0]
         if not closing:
@@ -803,166 +877,174 @@ class March:
             self.penalties[pair] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         system = self.solve(load, float(self.values[load]), z)
-        if system is None or self.moved(system, z) > _CORRECTED:
+        if system is None or self.largest_motion(system, z) > _MAX_CORRECTION:
             self.restore(there)
             return False
         self.system = system
         return True
 
-    def sharpen(self) -> None:
-        """Take what is left of the unbalanced force down to round-off, where few iterations more do.
+    def iterate_to_round_off(self) -> None:
+        """Iterate the residual down to round-off, if a few iterations suffice.
 
-        What is accepted is a part of the largest force within the elements, which may be a hundred times the loads.
+        The accepted residual is relative to the largest element force, which may exceed the loads a hundredfold.
         """
-        settings = replace(self.settings, residual=_SHARP * self.settings.residual, newton_limit=_SHARPENINGS)
+        settings = replace(
+            self.settings, residual=_FINE_RESIDUAL * self.settings.residual, newton_limit=_FINE_ITERATIONS
+        )
         system = self.system
         if float(np.abs(system.residual).max()) > max(settings.residual * system.scale, system.floor):
             solved = equilibrium(
                 self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
             )
             self.iterations += solved.iterations
-            if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
+            if solved.converged and self.largest_motion(solved.system, system.z) <= _FINE_RESIDUAL:
                 self.system = solved.system
 
-    def poise(self) -> None:
-        """Take what gaps are rounded to, times a stiff penalty, out of the unbalanced force where it is felt.
-
-        Where it is all there is, it is left to be told.
-        """
+    def remove_gap_round_off(self) -> None:
+        """Remove the round-off of gaps times a stiff penalty from the residual, if the forces exceed round-off."""
         accepted = self.settings.residual * self.system.scale
-        if self.system.told and float(np.abs(self.system.residual).max()) > accepted:
-            self.system = poised(self.model, self.values, self.system, accepted)
+        if self.system.significant and float(np.abs(self.system.residual).max()) > accepted:
+            self.system = without_gap_round_off(self.model, self.values, self.system, accepted)
 
     def allowed(self) -> dict[Contact, float]:
-        """How deep contacts in points may be: by the penetration asked, or less where that is felt.
+        """Allowed penetration by contact, from the requested penetration or from the effect on other forces.
 
-        Of those on what is rigid that are not sharp only the latter counts; what is not named is not held to any.
+        For contacts with smooth rigid surfaces only the effect counts; a contact without an entry has no bound.
         """
         system, settings = self.system, self.settings
-        known = felt(self.model, system, self.penalties, self.open, settings.quadrature)
-        felt_at_most = min(_FELT * settings.penetration, FELT)
-        found: dict[Contact, float] = {}
-        for one in system.touches:
-            if not one.closed:
+        effects = penetration_effects(self.model, system, self.penalties, self.open, settings.quadrature)
+        felt_at_most = min(_EFFECT_FACTOR * settings.penetration, SIGNIFICANT)
+        depths: dict[Contact, float] = {}
+        for contact in system.touches:
+            if not contact.closed:
                 continue
-            depth = settings.penetration * one.pair.scale if isinstance(one.pair, Pair) or one.sharp else np.inf
-            if (share := known.get(one.pair, 0.0)) > 0.0:
-                little = one.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
-                depth = min(depth, max(little, ROUNDED))
+            depth = (
+                settings.penetration * contact.pair.scale if isinstance(contact.pair, Pair) or contact.sharp else np.inf
+            )
+            if (share := effects.get(contact.pair, 0.0)) > 0.0:
+                reduced_depth = contact.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
+                depth = min(depth, max(reduced_depth, ROUND_OFF_DEPTH))
             if np.isfinite(depth):
-                found[one.pair] = depth
-        return found
+                depths[contact.pair] = depth
+        return depths
 
-    def _wanted(self, one: Touch, fall: float, allowed: float | None) -> float:
-        """The factor from a penalty to the one that leaves the penetration ``allowed``, or to the least for a station.
+    def _penalty_factor(self, contact: Touch, fall: float, allowed: float | None) -> float:
+        """Factor of a penalty for the penetration ``allowed``, and at least for the stiffness required at a station.
 
-        The penetration falls with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
-        −1 in an area.  On what is rigid and not sharp a penalty stiffer than the elements can follow spoils more than
-        the overlap that it leaves: its penalty is always the same.
+        The penetration goes with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
+        −1 in an area. On a smooth rigid surface the penalty is constant: beyond the resolution of the elements a
+        stiffer penalty costs more accuracy than its penetration.
         """
-        least = max(one.pair.stiffest, self.firm.get(one.pair.name, 0.0)) / self.penalties[one.pair].stiffness
-        if not one.closed:
+        least = (
+            max(contact.pair.stiffest, self.least_penalties.get(contact.pair.name, 0.0))
+            / self.penalties[contact.pair].stiffness
+        )
+        if not contact.closed:
             return 1.0
         if allowed is None:
             return max(1.0, least)
         aim = _AIM * allowed
-        # what overlaps in spite of that has gone through, and is not pushed out again
-        slender = max(1.0, self._finest / one.pair.scale)
-        most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _FALLS[1] * least
-        return float(min(max((one.penetration / aim) ** fall, least), most))
+        # a penetration above this bound belongs to a body that was passed through
+        slender = max(1.0, self._shortest_element / contact.pair.scale)
+        most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _EXPONENTS[1] * least
+        return float(min(max((contact.penetration / aim) ** fall, least), most))
 
-    def _will_do(self, one: Touch, factor: float, tries: int, allowed: float | None) -> bool:
-        """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
+    def _penalty_accepted(self, contact: Touch, factor: float, tries: int, allowed: float | None) -> bool:
+        """True if a penalty needs no change; after several iterations a pair's penalty may be too stiff."""
         if allowed is None:
             return factor <= 1.0 + _SAME
-        if abs(factor - 1.0) <= _EVEN:
+        if abs(factor - 1.0) <= _PENALTY_TOLERANCE:
             return True
-        enough = one.penetration <= allowed
-        stiff = one.pair.stiffest <= (1.0 + _EVEN) * self.penalties[one.pair].stiffness
+        enough = contact.penetration <= allowed
+        stiff = contact.pair.stiffest <= (1.0 + _PENALTY_TOLERANCE) * self.penalties[contact.pair].stiffness
         return tries >= _POLISHINGS and enough and stiff
 
-    def _falls(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
-        """How the penetrations have fallen from the penalties of now to those of ``system``: −ln ε by ln depth."""
-        before = {one.pair: one.penetration for one in self.system.touches}
-        found = {}
-        for one in system.touches:
-            factor = tighter[one.pair].stiffness / self.penalties[one.pair].stiffness
-            share = one.penetration / before[one.pair] if before[one.pair] > 0.0 else 0.0
-            if share > 0.0 and abs(np.log(share)) > _EVEN:
-                found[one.pair] = float(np.clip(-np.log(factor) / np.log(share), *_FALLS))
-        return found
+    def _penetration_exponents(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
+        """Exponents −Δln ε/Δln depth of the penetration, from current to ``tighter`` penalties of ``system``."""
+        before = {contact.pair: contact.penetration for contact in self.system.touches}
+        exponents = {}
+        for contact in system.touches:
+            factor = tighter[contact.pair].stiffness / self.penalties[contact.pair].stiffness
+            share = contact.penetration / before[contact.pair] if before[contact.pair] > 0.0 else 0.0
+            if share > 0.0 and abs(np.log(share)) > _PENALTY_TOLERANCE:
+                exponents[contact.pair] = float(np.clip(-np.log(factor) / np.log(share), *_EXPONENTS))
+        return exponents
 
-    def _misled(self, pressures: Mapping[Contact, float]) -> bool:
-        """Whether a lead belongs to another pressure than the axial forces give."""
+    def _leads_outdated(self, pressures: Mapping[Contact, float]) -> bool:
+        """True if a lead differs from the lead of the current axial forces."""
         return any(
             abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
-            > _LED * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
+            > _LEAD_TOLERANCE * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
             for pair, pressure in pressures.items()
         )
 
     def depths(self) -> dict[Contact, float]:
-        """The penetrations of the closed contacts of beams; of those that do not press yet, what they will be allowed.
+        """Penetrations of closed pairs of beams; the allowed penetration for pairs that do not press yet.
 
-        A contact in search of its zone is none of them: its penalty is soft enough to be let go.
+        A contact whose zone is still sought is left out: its penalty is soft enough to open.
         """
         allowed = self.settings.penetration
         return {
-            one.pair: one.penetration if one.push > 0.0 else allowed * one.pair.scale
-            for one in self.system.touches
-            if isinstance(one.pair, Pair)
-            and one.zones.least <= CLOSED * one.pair.scale
-            and self.penalties[one.pair].stiffness >= one.pair.stiffness
+            contact.pair: contact.penetration if contact.push > 0.0 else allowed * contact.pair.scale
+            for contact in self.system.touches
+            if isinstance(contact.pair, Pair)
+            and contact.zones.least <= CLOSED * contact.pair.scale
+            and self.penalties[contact.pair].stiffness >= contact.pair.stiffness
         }
 
     def pushes(self) -> dict[Contact, Array]:
-        """What the points of the closed contacts push with."""
-        return {one.pair: one.pushes for one in self.system.touches if one.closed}
+        """Point forces (k,) of the closed contacts."""
+        return {contact.pair: contact.pushes for contact in self.system.touches if contact.closed}
 
-    def moved(self, system: System, z: State) -> float:
-        """The most by which anything differs."""
+    def largest_motion(self, system: System, z: State) -> float:
+        """Largest displacement (or rotation) between ``system`` and the state ``z``."""
         return float(np.abs((system.z.values - z.values)[self.model.moving]).max())
 
-    def turned(self, system: System, z: State) -> float:
-        """The most by which a section of a beam, or a body, is turned against the state ``z``, rad."""
+    def largest_rotation(self, system: System, z: State) -> float:
+        """Largest rotation (rad) of a section or body between ``system`` and the state ``z``."""
         return float(np.abs((system.z.values - z.values)[self.model.turning]).max())
 
-    def shown(self, load: int, value: float) -> str:
-        """What is stepped, and a value of it in SI."""
+    def described(self, load: int, value: float) -> str:
+        """Name of the stepped parameter and a value in SI units, for messages."""
         part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
 
 
 def _too_deep(model: Model, system: System) -> list[Contact]:
-    """What sinks so far into what it touches that it is about to be taken for having gone through.
+    """Contacts too deep for the next step, which might count the bodies as passed through.
 
-    Where neutral lines cross, the one does not lie on a side of the other any more, and no penalty parts them.
+    Where neutral lines cross, the first beam is on no side of the second, and no penalty separates them.
     """
     return [
-        one.pair
-        for one in system.touches
-        if one.penetration > _SUNK * _deepest(one.pair)
-        or (isinstance(one.pair, Face) and one.closed and cut(model, one.pair, system.z) > _SUNK * one.pair.scale)
+        contact.pair
+        for contact in system.touches
+        if contact.penetration > _PASSING_SHARE * _deepest(contact.pair)
+        or (
+            isinstance(contact.pair, Face)
+            and contact.closed
+            and tip_depth(model, contact.pair, system.z) > _PASSING_SHARE * contact.pair.scale
+        )
     ]
 
 
-def _deepest(what: Contact) -> float:
-    """How deep something may be in what it touches and not have gone through; nothing is known of lines and edges."""
-    match what:
+def _deepest(contact: Contact) -> float:
+    """Greatest penetration of a contact not yet passed through; infinite for lines and edges."""
+    match contact:
         case Pair(distance=distance, scale=scale) if distance > 0.0:
             return scale
         case Circle():
-            return what.deepest
+            return contact.deepest
         case _:
             return np.inf
 
 
 def _straight(before: float, beyond: float) -> float:
-    """The share of the way at which what falls from one to the other is zero on a straight line; first what is so."""
+    """Share of the way to the zero of a linear function with these end values; zero if the first is not positive."""
     return before / (before - beyond) if before > 0.0 else 0.0
 
 
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
-    """The undeformed mechanism, unloaded."""
+    """Initial state of load stepping: undeformed and unloaded."""
     values = np.zeros(len(model.stepped))
-    system = assemble(model, {}, settings.quadrature, values, model.start, model.drawn)
-    return March(model, settings, list(contacts), values, system, model.drawn)
+    system = assemble(model, {}, settings.quadrature, values, model.start, model.initial_constraints)
+    return March(model, settings, list(contacts), values, system, model.initial_constraints)

@@ -1,4 +1,4 @@
-"""What motions are measured by: a lumped mass, arc length for the nodes and one for the bodies."""
+"""Lumped mass as a metric of motions: arc length for nodes, one for bodies."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from fea_reference.model import Model
 
 
 def lumped_mass(model: Model) -> Array:
-    """The diagonal of M, (size,); zero for what is no motion."""
+    """The diagonal of M, (size,); zero for forces and multipliers."""
     h = model.elements.length
     lumped = np.zeros(model.node_dofs.shape[1])
     for beam in model.beams:

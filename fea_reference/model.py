@@ -1,12 +1,12 @@
-"""A scene made discrete: nodes, elements, bodies, joints, guides, drives and loads, all without units.
+"""Discretisation of a scene: nodes, elements, bodies, joints, guides, drives and loads, all dimensionless.
 
-Lengths are over the longest beam, bending stiffnesses over the largest, so forces are over EI/length² and
-moments over EI/length: the same scene in other units is the same problem to the last digits.
+Lengths are relative to the longest beam and bending stiffnesses to the largest. The unit of force is therefore
+EI/length², the unit of moment EI/length. A change of the scene's units leaves the problem unchanged to round-off.
 
-The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
-scikit-fem; (X, Y, φ) of every body that moves, its displacement and rotation; one multiplier per row of a joint, of a
-hinge between bodies (two), of a guide (a sliding body has two: no motion across, no rotation; with a pin in a slot the
-first alone; a turning one two: its pivot stays), of a drive and of a stop.
+The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by scikit-fem; (X,
+Y, φ) of every moving body, its displacement and rotation; the multipliers of all rows. A joint has two or three rows,
+a hinge between bodies two, a drive and a stop a single row. The guide of a sliding body has two rows, against motion
+across and rotation; with a pin in a slot the first row alone. The guide of a turning body has two rows for its pivot.
 """
 
 from collections.abc import Sequence
@@ -37,8 +37,8 @@ from cprbm_scene.statement import (
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
-from fea_reference.hermite import Index, NeutralLine, by_chord
-from fea_reference.known import Known
+from fea_reference.hermite import Index, NeutralLine, chord_speed_excess
+from fea_reference.known import Memory
 from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
@@ -47,15 +47,15 @@ from fea_reference.settings import Settings
 from fea_reference.state import Complex, State
 from fea_reference.stops import StopPart, stops_of
 from fea_reference.touch import Contact, Penalty, Touch
-from fea_reference.upright import upright
+from fea_reference.upright import shear_layers
 from fea_reference.zones import Survey, Zones
 
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # within an element: the neutral line is a cubic there
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # Gauss points per element: the neutral line is a cubic there
 
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """The scene's own: longest beam's ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m)."""
+    """Dimensional units: ``length`` (m) of the longest beam, ``bending`` stiffness (N·m²), ``origin`` (2,) (m)."""
 
     length: float
     bending: float
@@ -63,21 +63,21 @@ class Units:
 
     @property
     def force(self) -> float:
-        """N."""
+        """Unit of force, N."""
         return self.bending / self.length**2
 
     @property
     def moment(self) -> float:
-        """N·m."""
+        """Unit of moment, N·m."""
         return self.bending / self.length
 
 
 @dataclass(frozen=True, slots=True)
 class BeamPart:
-    """Where a beam's nodes and elements stand among all.
+    """A beam: the slices of its nodes and elements among all.
 
-    ``length`` and ``thickness`` are without units, the latter the largest, which a beam that touches by its edges has
-    everywhere; ``record`` and ``material`` are the scene's, ``unit`` of its bending stiffness.
+    ``length`` and ``thickness``, the largest, are dimensionless. ``record`` and ``material`` belong to the scene;
+    ``unit`` is the unit of bending stiffness (N·m²).
     """
 
     name: str
@@ -90,11 +90,11 @@ class BeamPart:
     unit: float
 
     def bending(self, fractions: Array) -> Array:
-        """EI at fractions (k,) of the arc length, without units."""
+        """EI at fractions (k,) of the arc length, dimensionless."""
         return bending_stiffness(self.record, self.material, fractions) / self.unit
 
     def bending_second(self, fractions: Array) -> Array:
-        """Second derivative of EI by arc length at fractions (k,), without units; at a knot what follows."""
+        """Second derivative of EI by arc length at fractions (k,), dimensionless; at a knot the value behind."""
         return bending_stiffness_second(self.record, self.material, fractions) / self.unit / self.length**2
 
     @property
@@ -110,7 +110,7 @@ class BeamPart:
 
 @dataclass(frozen=True, slots=True)
 class BodyPart:
-    """A rigid body: reference ``centre`` (2,), ``points`` (2,) by name, its three unknowns if it moves."""
+    """A rigid body: reference ``centre`` (2,), ``points`` (2,) by name, and the three unknowns of a moving body."""
 
     name: str
     centre: Array
@@ -120,9 +120,9 @@ class BodyPart:
 
 @dataclass(frozen=True, slots=True)
 class JointPart:
-    """A beam's end held at a body's point: x − X − R(φ) r = 0 and, if welded, θ − φ − θ⁰ = 0.
+    """A beam's end joined to a body's point: x − X − R(φ) r = 0 and, if welded, θ − φ − θ⁰ = 0.
 
-    ``dofs`` are the end node's, ``rows`` the multipliers' (2 or 3), ``arm`` is r.
+    ``dofs`` are the unknowns of the end node, ``rows`` the two or three multipliers, ``arm`` is r and ``angle`` θ⁰.
     """
 
     point: str
@@ -135,9 +135,9 @@ class JointPart:
 
 @dataclass(frozen=True, slots=True)
 class HingePart:
-    """Points of two bodies that stay together: X₁ + R(φ₁) r₁ − X₂ − R(φ₂) r₂ and what the centres differ by is zero.
+    """A hinge of two bodies: X₁ + R(φ₁) r₁ − X₂ − R(φ₂) r₂ plus the difference of the reference centres is zero.
 
-    ``arms`` are r₁ and r₂ (2,), ``points`` their names, ``rows`` the two multipliers'.
+    ``arms`` are r₁ and r₂ (2,), ``points`` the names of the points, ``rows`` the two multipliers.
     """
 
     points: tuple[str, str]
@@ -159,9 +159,10 @@ class LoadPart:
 
 @dataclass(frozen=True, slots=True)
 class BeamLoadPart:
-    """A load on a beam, by its number, of value one: ``forces`` (2, k) at places ``zeta`` (k,), element number plus ξ.
+    """A unit load on beam number ``beam``: ``forces`` (2, k) at places ``zeta`` (k,), element number plus ξ.
 
-    It acts from ``begin`` to ``end`` (places), the same for a force; ``density`` (2,) is the force or that per length.
+    The load acts from place ``begin`` to ``end``, equal for a point force; ``density`` (2,) is the force, or the
+    force per length.
     """
 
     name: str
@@ -175,13 +176,13 @@ class BeamLoadPart:
 
     @property
     def distributed(self) -> bool:
-        """Whether it is, or else a force."""
+        """True for a distributed load, False for a point force."""
         return self.begin < self.end
 
 
 @dataclass(frozen=True, slots=True)
 class BeamMomentPart:
-    """A moment on a beam, by its number, at the place ``zeta``, element number plus ξ."""
+    """A moment on beam number ``beam`` at the place ``zeta``, element number plus ξ."""
 
     name: str
     beam: int
@@ -196,7 +197,7 @@ OnBeam = BeamLoadPart | BeamMomentPart
 class DrivePart:
     """A row that prescribes a body's motion: direction·(X + R(φ) r − r) = value, or φ = value without a direction.
 
-    ``row`` is the multiplier's, ``arm`` is r, ``unit`` the value's (m or rad).
+    ``row`` is the multiplier's number, ``arm`` is r, ``unit`` the unit of the value (m or rad).
     """
 
     name: str
@@ -207,26 +208,26 @@ class DrivePart:
     unit: float
 
     def motion(self, X: Array) -> float:
-        """What is prescribed, of a body's (X, Y, φ)."""
+        """The prescribed motion as a function of the body's (X, Y, φ)."""
         if self.direction is None:
             return float(X[2])
         return float(self.direction @ (X[:2] + turned(self.arm, X[2]) - self.arm))
 
     def gradient(self, phi: float) -> Array:
-        """The motion's derivative by (X, Y, φ)."""
+        """Derivative of the motion by (X, Y, φ)."""
         if self.direction is None:
             return np.array([0.0, 0.0, 1.0])
         arm = turned(self.arm, phi)
         return np.array([*self.direction, arm[0] * self.direction[1] - arm[1] * self.direction[0]])
 
     def second(self, phi: float) -> float:
-        """The motion's second derivative by φ, the only one that does not vanish."""
+        """Second derivative of the motion by φ, the only nonzero second derivative."""
         return 0.0 if self.direction is None else -float(self.direction @ turned(self.arm, phi))
 
 
 @dataclass(frozen=True, slots=True)
 class ApartPart:
-    """An end that is drawn apart from its point: its ``joint``, and the auxiliary ``moment`` without units."""
+    """A beam's end to be assembled: its ``joint``, and the dimensionless auxiliary ``moment``."""
 
     joint: JointPart
     moment: float
@@ -234,7 +235,7 @@ class ApartPart:
 
 @dataclass(frozen=True, slots=True)
 class SharePart:
-    """A share of the assembly: of its moments, or of the way of its ends to their points."""
+    """A parameter of the assembly: the share of the auxiliary moments, or of the ends' way to their points."""
 
     name: str
     unit: float = 1.0
@@ -246,15 +247,15 @@ WAY = SharePart("share of the ends' way to their points")
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state.
+    """Discretised scene; ``start`` is the undeformed state.
 
-    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
-    the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.
-    ``lines``, ``discs``, ``distances``, ``surveys``, ``overlaps``, ``leads`` and ``touches`` remember what has been
-    found in a state: neutral lines by the name of the beam, discs about these and their distances from edges
-    (:mod:`fea_reference.far`), gaps of beams at a distance, the zones of contacts, those of what is rigid with a lead
-    and the corners between them, and what a contact is with a penalty, a quadrature and the depth at which it is held;
-    ``loaded`` where what acts on beams begins to work.
+    ``guides`` are rows of drives with the constant value zero, and ``apart`` the ends to be assembled. ``stiffest``
+    is the largest 12 EI/h² of the elements, and ``moving`` are the motions among the unknowns.
+
+    Memories of results by state: ``bends`` element forces, ``lines`` neutral lines by beam, ``discs`` bounding discs
+    and ``distances`` their distances from edges (:mod:`fea_reference.far`), ``surveys`` gaps of beams, ``overlaps``
+    zones of contacts, ``leads`` zones on rigid bodies with a lead and their corners, ``touches`` evaluated contacts,
+    ``loaded`` initial places of loads on beams.
     """
 
     units: Units
@@ -276,53 +277,55 @@ class Model:
     stiffest: float
     moving: Index
     patterns: Patterns = field(repr=False)
-    bends: Known[None, ElementForces] = field(default_factory=Known, repr=False)
-    lines: Known[str | tuple[str, bytes], NeutralLine] = field(default_factory=Known, repr=False)
-    discs: Known[str, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
-    distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
-    surveys: Known[tuple[Contact, float], Survey] = field(default_factory=Known, repr=False)
-    overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
-    leads: Known[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(default_factory=Known, repr=False)
-    touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
-    loaded: Known[str, Array] = field(default_factory=Known, repr=False)
+    bends: Memory[None, ElementForces] = field(default_factory=Memory, repr=False)
+    lines: Memory[str | tuple[str, bytes], NeutralLine] = field(default_factory=Memory, repr=False)
+    discs: Memory[str, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
+    distances: Memory[Contact, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
+    surveys: Memory[tuple[Contact, float], Survey] = field(default_factory=Memory, repr=False)
+    overlaps: Memory[Contact, Zones] = field(default_factory=Memory, repr=False)
+    leads: Memory[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(
+        default_factory=Memory, repr=False
+    )
+    touches: Memory[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Memory, repr=False)
+    loaded: Memory[str, Array] = field(default_factory=Memory, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
-        """What has a value that is stepped, in the order of the values: loads, drives, the assembly's two shares."""
+        """The stepped parameters in the order of the values: loads, drives, then the two shares of the assembly."""
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
 
     @property
     def turning(self) -> Index:
-        """The angles among the unknowns: of all nodes' sections and of all bodies that move."""
+        """The angles among the unknowns: of all nodes' sections and of all moving bodies."""
         bodies = [body.dofs[2:] for body in self.bodies if body.dofs is not None]
         return np.concatenate([self.node_dofs[2], *bodies])
 
     @property
-    def drawn(self) -> Acting:
-        """What acts while the ends that are drawn apart are free."""
+    def initial_constraints(self) -> Acting:
+        """Active constraints before the assembly."""
         return Acting(None if self.apart else np.zeros((0, 2)), stopping=not self.apart)
 
     def free(self, joint: JointPart, acting: Acting) -> bool:
-        """Whether a joint does not act because its end is not assembled yet."""
-        return acting.ways is None and any(one.joint is joint for one in self.apart)
+        """True if the joint is inactive because its end is not assembled yet."""
+        return acting.ways is None and any(part.joint is joint for part in self.apart)
 
     def beam(self, name: str) -> BeamPart:
-        """The beam of that name."""
+        """The beam of the given name."""
         return next(beam for beam in self.beams if beam.name == name)
 
     def bend(self, z: State) -> ElementForces:
-        """What the elements do in state ``z``."""
-        return self.bends.found(z, None, lambda: forces(self.elements, self.element_dofs, z))
+        """Forces, stiffness and energy of all elements in state ``z``."""
+        return self.bends.recall(z, None, lambda: forces(self.elements, self.element_dofs, z))
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
-        return self.lines.found(z, beam.name, lambda: self._line(beam, z))
+        return self.lines.recall(z, beam.name, lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
         return self._through(beam, tangent_angles(self.elements, self._span(beam), z), z)
 
     def line_of_sections(self, beam: BeamPart, z: State) -> NeutralLine:
-        """The same with the sections' rotations for tangents: what it is without the shear."""
+        """The neutral line with the sections' rotations as tangents, without the shear angle."""
         return self._through(beam, z[self.node_dofs[2, beam.nodes]], z)
 
     def _through(self, beam: BeamPart, angles: Array, z: State) -> NeutralLine:
@@ -336,39 +339,39 @@ class Model:
             z[self.element_dofs[6, beam.elements]],
         )
 
-    def apart_at_nodes(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
-        """Elements (k,) of a beam, each leaning from its sections by its own angle of shear, as long as its chord says.
+    def separate_elements(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
+        """Separate cubics of elements (k,) of a beam, tangent at both ends by the element's own shear angle.
 
-        They are the elements 0, 2, ... 2 k − 2 of a line; what lies between says nothing.  In place of an axial force a
-        line goes by what its speed l (1 + (ψ₂ − ψ₁)²/16) is more than one without stretch.
+        The result is a line of 2 k − 1 elements, of which only 0, 2, … 2 k − 2 have a meaning. The speed l (1 + (ψ₂ −
+        ψ₁)²/16) of the chord replaces the speed from the axial force.
         """
-        return self.lines.found(z, (beam.name, e.tobytes()), lambda: self._apart(beam, e, z))
+        return self.lines.recall(z, (beam.name, e.tobytes()), lambda: self._separate_line(beam, e, z))
 
-    def _apart(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
+    def _separate_line(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         nodes = np.stack([e, e + 1], axis=1).ravel()
         dofs = self.node_dofs[:, beam.nodes][:, nodes]
         gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
         angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
         dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
-        more, *_ = by_chord(np.hypot(dx, dy), lengths, np.diff(angles))
-        return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, more)
+        excess, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
+        return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, excess)
 
-    def chain_apart(self, beam: BeamPart, e: Index, z: State) -> Chain:
-        """From what the elements (k,) of :meth:`apart_at_nodes` go by to the unknowns."""
+    def separate_chain(self, beam: BeamPart, e: Index, z: State) -> Chain:
+        """Chain rule from the elements (k,) of :meth:`apart_at_nodes` to the unknowns."""
         return sheared_chain(self.elements, self._span(beam), e, z)
 
     def chain(self, places: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
-        """From what lines go by to the unknowns: of beams at elements (k,) of theirs, and of a ``body``'s three."""
+        """Chain rule from line elements (k,) of beams, and a ``body``'s three unknowns, to the unknowns."""
         k = places[0][1].size
         moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
         return chain(self.elements, tuple((self._span(beam), e) for beam, e in places), moved, z)
 
     def chain_of_sections(self, beam: BeamPart, e: Index) -> Chain:
-        """From what :meth:`line_of_sections` goes by to the unknowns, at elements (k,) of a beam."""
+        """Chain rule from :meth:`line_of_sections` to the unknowns, at elements (k,) of a beam."""
         return own_chain(self._span(beam), e)
 
     def sheared(self, beam: BeamPart, e: Index, z: State) -> tuple[Array, Shear]:
-        """Angles of shear (k,) of elements (k,) of a beam, and their derivatives by the nodes' six unknowns."""
+        """Shear angles (k,) of elements (k,) of a beam, and their derivatives by the nodes' six unknowns."""
         span = self._span(beam)
         gamma = shear_angle(self.elements, span.part, span.dofs, z)[e]
         return gamma, shear(self.elements, span.part.start + e, span.dofs[:, e], z)
@@ -380,15 +383,15 @@ class Model:
         return Span(beam.elements, self.element_dofs[:, beam.elements], (welded[0], welded[1]))
 
     def body_state(self, body: BodyPart, z: State) -> Array:
-        """(X, Y, φ) of a body, zero for the ground."""
+        """(X, Y, φ) of a body, zero for a fixed body."""
         return np.zeros(3) if body.dofs is None else np.asarray(z[body.dofs])
 
     def place(self, body: BodyPart, point: str, z: State) -> Array:
-        """Where a body's point is, (2,)."""
+        """Current position (2,) of a body's point."""
         return self.carried(body, body.points[point] - body.centre, z)
 
     def carried(self, body: BodyPart, arm: Array, z: State) -> Array:
-        """Where what lay at ``arm`` (2,) from a body's centre is, (2,)."""
+        """Current position (2,) of the point at ``arm`` (2,) from the body's centre."""
         X, Y, phi = self.body_state(body, z)
         return np.asarray(body.centre + np.array([X, Y]) + turned(arm, phi))
 
@@ -427,13 +430,13 @@ def build(scene: Scene, settings: Settings) -> Model:
         points.append((where - units.origin) / units.length)
         tangents.append(angle)
         cells.append(node + np.stack([np.arange(n), np.arange(1, n + 1)]))
-        compliances.append(compliance(beam, material, lengths[name], n, upright(scene, name)))
+        compliances.append(compliance(beam, material, lengths[name], n, shear_layers(scene, name)))
         t = beam.thickest / units.length
         nodes_here, elements_here = slice(node, node + n + 1), slice(cell, cell + n)
         beams.append(BeamPart(name, nodes_here, elements_here, own_length, t, beam, material, units.bending))
         node, cell, offset = node + n + 1, cell + n, offset + own_length + 1.0
 
-    # One coordinate, the arc length, for all beams one after the other; no element spans the gaps.
+    # a single arc-length coordinate for all beams in sequence; no element spans the gaps between beams
     mesh = MeshLine(np.concatenate(arc)[None, :], np.concatenate(cells, axis=1))
     basis = CellBasis(mesh, ElementVector(ElementLineP1(), 3) * ElementLineP0(), intorder=2)
     nodes, angles = np.concatenate(points), np.concatenate(tangents)
@@ -442,9 +445,11 @@ def build(scene: Scene, settings: Settings) -> Model:
         mesh,
         nodes,
         angles,
-        np.concatenate([one.bending for one in compliances], axis=2) * units.moment,
-        np.concatenate([one.axial for one in compliances]) * (stretches * units.force / units.length),
-        np.concatenate([one.shear for one in compliances]) * (shears * units.force / units.length),
+        np.concatenate([part_compliance.bending for part_compliance in compliances], axis=2) * units.moment,
+        np.concatenate([part_compliance.axial for part_compliance in compliances])
+        * (stretches * units.force / units.length),
+        np.concatenate([part_compliance.shear for part_compliance in compliances])
+        * (shears * units.force / units.length),
     )
     node_dofs = np.asarray(basis.nodal_dofs, dtype=np.int64)
     size = int(basis.N)
@@ -475,9 +480,12 @@ def build(scene: Scene, settings: Settings) -> Model:
 
     hinges: list[HingePart] = []
     for both in scene.pins.values():
-        one, other = (number[scene.body_of(point)] for point in both.points)
-        arms = [bodies[i].points[point] - bodies[i].centre for i, point in zip((one, other), both.points, strict=True)]
-        hinges.append(HingePart(both.points, (one, other), (arms[0], arms[1]), np.arange(size, size + 2)))
+        part_compliance, other = (number[scene.body_of(point)] for point in both.points)
+        arms = [
+            bodies[i].points[point] - bodies[i].centre
+            for i, point in zip((part_compliance, other), both.points, strict=True)
+        ]
+        hinges.append(HingePart(both.points, (part_compliance, other), (arms[0], arms[1]), np.arange(size, size + 2)))
         size += 2
 
     loads: list[LoadPart | OnBeam] = []
@@ -573,7 +581,7 @@ def _on_beam(
 
 
 def _joint(end: BeamEnd, body: int, bodies: list[BodyPart], dofs: Index, angle: float, row: int) -> JointPart:
-    """The joint of an end that is not free; its rows begin at ``row``."""
+    """The joint of a beam's end that is not free; its rows begin at ``row``."""
     assert not isinstance(end, FreeEnd)
     rows = np.arange(row, row + (3 if isinstance(end, WeldedEnd) else 2))
     return JointPart(end.point, body, dofs, rows, bodies[body].points[end.point] - bodies[body].centre, angle)

@@ -1,18 +1,18 @@
-"""Newton's method for one equilibrium.
+"""Newton's method for a single equilibrium.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-g       gap at a point of a contact, to where its pressure begins; δz is a step
-k       stiffness of the point, the penalty times the length that it stands for
-λ       push of the point, an unknown of its own
+g       gap minus lead at a point of a contact; δz is a step
+k       stiffness of the point, the penalty times the length of the point
+λ       contact force of the point, an unknown
 ======  =====================================================================================
 
-A step overlaps by its square, and a stiff penalty makes of that a force thousands of times the contact's own, and of
-the force a geometric stiffness in which the next step gets lost.  Taken for an unknown with the equation λ = −k g, the
-push after a step is −k (g + ∂g δz), with the step's overlap left out.  Eliminated point by point, it leaves the
-residual as it is, with −k g, and the tangent k ∂g ∂gᵀ − λ ∂²g: the equilibria are the same, and so is the order of
-convergence (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 986).
+The overlap after a step has an error of second order. A stiff penalty turns this error into a force thousands of
+times the contact force, with a geometric stiffness that misleads the next step. With the force as an unknown, λ = −k
+g, the force after a step is −k (g + ∂g δz), without the second-order overlap. Eliminated point by point, λ leaves the
+residual with −k g unchanged, and the tangent becomes k ∂g ∂gᵀ − λ ∂²g. The equilibria and the order of convergence
+remain the same (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 986).
 """
 
 from collections.abc import Callable, Mapping
@@ -24,29 +24,29 @@ from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.hermite import Index
-from fea_reference.linesearch import searched
+from fea_reference.linesearch import line_search
 from fea_reference.model import Model
 from fea_reference.settings import Settings
-from fea_reference.sinking import known_depths, sunk
+from fea_reference.sinking import known_depths, with_predicted_depths
 from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
 
-_TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
-_LOST = 3  # corrections longer than that: an equilibrium so far off would belong to another branch
-_NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
-_NOTHING = 1e-2  # of the correction and the unbalanced force asked: what need not be corrected any more
-_SETTLED = 1e-4  # correction after which holding has done what it can
-_SMALL = 1e-4  # of the longest correction, or of a length: loads of any size begin their search alike
-_FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
-_TOUCHING = 1e-9  # of the thickness: an overlap that is none
-_STALLED = 6  # corrections in a row, each small beside the longest of the search, none of them half the first
-_HELD = 6  # iterations for which a contact is held at most
+_MAX_MOTION = 0.4  # rad, and lengths of the longest beam: largest motion per iteration
+_LONG_CORRECTIONS = 3  # longer corrections before the search is given up: a distant equilibrium is on another branch
+_NEAR = 3.0  # ratio of penetrations within the reach of Newton's method
+_NOTHING = 1e-2  # times the accepted correction and residual: no further step needed
+_SETTLED = 1e-4  # correction below which held contacts are released
+_SMALL = 1e-4  # times the longest correction, or a length: scale of small corrections, the same for loads of any size
+_FALLING = 0.1  # times the previous residual: this decrease allows a few more iterations
+_TOUCHING = 1e-9  # thicknesses: negligible overlap
+_STALLED = 6  # consecutive small corrections without one below half of the first: no convergence
+_HOLD_ITERATIONS = 6  # largest number of iterations with held contacts
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """What came of it: the last system, whether it is in equilibrium, and the iterations spent."""
+    """Result of the search: the last system, True for an equilibrium, and the number of iterations."""
 
     system: System
     converged: bool
@@ -64,32 +64,33 @@ def equilibrium(
     before: Mapping[Contact, Array],
     drag: Drag | None = None,
 ) -> Solved:
-    """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
+    """Equilibrium near ``z`` under the ``values``, with fixed active constraints ``acting`` of any sign.
 
-    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: where they are not near
-    that, or open before they pull, these are held until they are again, or until they pull.  ``before`` is what the
-    points of the contacts pushed with there, (k,) each.  A ``drag`` resists the motions.  A search whose corrections
-    stay as small as they are without arriving is given up: small beside what it began with, for a contact's zone may be
-    sought by steps as small as the load.
+    ``depths`` are penetrations of contacts closed in the previous equilibrium. A contact far from its depth, or open
+    although not in tension, is held at this depth until near the depth or in tension. ``before`` are the previous
+    point forces (k,) of the contacts. A ``drag`` resists the motions. The search stops if small corrections do not
+    decrease: small against the first ones, because the search for a zone may take steps as small as the load.
     """
     moving = model.moving
     correction, last, iteration, far = np.inf, np.inf, 0, 0
     longest = 0.0
     small: list[float] = []
-    foreseen = dict(before)
-    system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, foreseen, drag)
-    held = {one.pair: depths[one.pair] for one in system.touches if _to_hold(one, depths, before)}
-    if held:
-        system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+    predicted = dict(before)
+    system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, predicted, drag)
+    held_depths = {
+        contact.pair: depths[contact.pair] for contact in system.touches if _needs_holding(contact, depths, before)
+    }
+    if held_depths:
+        system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
     known = known_depths(system, depths, before)
 
     def settled_at(system: System, z: State) -> State:
-        return sunk(model, penalties, settings.quadrature, system, z, foreseen, known)
+        return with_predicted_depths(model, penalties, settings.quadrature, system, z, predicted, known)
 
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
-        if not held and correction <= settings.correction and unbalanced <= accepted:
+        if not held_depths and correction <= settings.correction and unbalanced <= accepted:
             return Solved(system, converged=True, iterations=iteration)
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
@@ -98,58 +99,68 @@ def equilibrium(
         if step is None:
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
-        if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
-            return Solved(system, converged=True, iterations=iteration)  # this step need not be made
-        far += correction > _TURN
+        if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
+            return Solved(system, converged=True, iterations=iteration)  # this step is not needed
+        far += correction > _MAX_MOTION
         longest = max(longest, correction)
         small = [*small[1 - _STALLED :], correction] if correction < _SMALL * min(1.0, longest) else []
-        stalled = not held and len(small) == _STALLED and min(small) > 0.5 * small[0]
-        if far >= _LOST or stalled:
+        stalled = not held_depths and len(small) == _STALLED and min(small) > 0.5 * small[0]
+        if far >= _LONG_CORRECTIONS or stalled:
             return Solved(system, converged=False, iterations=iteration + 1)
-        step *= min(1.0, _TURN / max(correction, _TURN))
-        foreseen = {one.pair: one.foreseen(step) for one in system.touches}
-        if penalties and not held and unbalanced > accepted:
-            system = _along(model, settings, penalties, values, system, step, moving, foreseen, drag, settled_at)
+        step *= min(1.0, _MAX_MOTION / max(correction, _MAX_MOTION))
+        predicted = {contact.pair: contact.predicted_forces(step) for contact in system.touches}
+        if penalties and not held_depths and unbalanced > accepted:
+            system = _line_searched(
+                model, settings, penalties, values, system, step, moving, predicted, drag, settled_at
+            )
             z = system.z
         else:
             z = settled_at(system, advance(model, z, step))
-            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
-        settled = iteration >= _HELD or correction < _SETTLED
-        lost = [one.pair for one in system.touches if _lost(one, depths, foreseen) and one.pair not in held]
-        if lost and not settled:
-            held = {**held, **{pair: depths[pair] for pair in lost}}
-            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
-        free = [
-            one.pair
-            for one in system.touches
-            if one.pair in held
-            and (settled or _near(one, held[one.pair]) or (iteration > 0 and foreseen[one.pair].sum() < 0.0))
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
+        settled = iteration >= _HOLD_ITERATIONS or correction < _SETTLED
+        opened = [
+            contact.pair
+            for contact in system.touches
+            if _opened_unexpectedly(contact, depths, predicted) and contact.pair not in held_depths
         ]
-        if free:
-            held = {pair: depth for pair, depth in held.items() if pair not in free}
-            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+        if opened and not settled:
+            held_depths = {**held_depths, **{pair: depths[pair] for pair in opened}}
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
+        released = [
+            contact.pair
+            for contact in system.touches
+            if contact.pair in held_depths
+            and (
+                settled
+                or _near_depth(contact, held_depths[contact.pair])
+                or (iteration > 0 and predicted[contact.pair].sum() < 0.0)
+            )
+        ]
+        if released:
+            held_depths = {pair: depth for pair, depth in held_depths.items() if pair not in released}
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held_depths, predicted, drag)
         iteration += 1
 
 
-def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contact, Array]) -> bool:
-    """Whether a contact is to be held: one that did not press and does not overlap is as it was."""
-    if one.pair not in depths or _near(one, depths[one.pair]):
+def _needs_holding(contact: Touch, depths: Mapping[Contact, float], before: Mapping[Contact, Array]) -> bool:
+    """True if a contact has to be held; a contact without force or overlap stays as it was."""
+    if contact.pair not in depths or _near_depth(contact, depths[contact.pair]):
         return False
-    pressed = one.pair in before and float(before[one.pair].sum()) > 0.0
-    return pressed or one.penetration > _TOUCHING * one.pair.scale
+    pressed = contact.pair in before and float(before[contact.pair].sum()) > 0.0
+    return pressed or contact.penetration > _TOUCHING * contact.pair.scale
 
 
-def _lost(one: Touch, depths: Mapping[Contact, float], foreseen: Mapping[Contact, Array]) -> bool:
-    """Whether a contact that was closed has opened, though it was foreseen to press."""
-    return one.pair in depths and not one.closed and float(foreseen[one.pair].sum()) > 0.0
+def _opened_unexpectedly(contact: Touch, depths: Mapping[Contact, float], predicted: Mapping[Contact, Array]) -> bool:
+    """True if a contact opened although its predicted force is positive."""
+    return contact.pair in depths and not contact.closed and float(predicted[contact.pair].sum()) > 0.0
 
 
-def _near(one: Touch, depth: float) -> bool:
-    """Whether Newton's method bridges by itself what a penetration is from a depth."""
-    return depth / _NEAR < one.penetration < _NEAR * depth
+def _near_depth(contact: Touch, depth: float) -> bool:
+    """True if the penetration is within reach of Newton's method from ``depth``."""
+    return depth / _NEAR < contact.penetration < _NEAR * depth
 
 
-def _along(
+def _line_searched(
     model: Model,
     settings: Settings,
     penalties: Mapping[Contact, Penalty],
@@ -157,11 +168,11 @@ def _along(
     system: System,
     step: Array,
     moving: Index,
-    foreseen: Mapping[Contact, Array],
+    predicted: Mapping[Contact, Array],
     drag: Drag | None,
     settled_at: Callable[[System, State], State],
 ) -> System:
-    """The system after as much of ``step`` as lowers the energy; forces take all of theirs."""
+    """System after a line search along the motions of ``step``; forces take the full step."""
     forces = step.copy()
     forces[moving] = 0.0
     motions = step - forces
@@ -170,9 +181,9 @@ def _along(
         z = advance(model, system.z, forces + fraction * motions)
         if fraction == 1.0:
             z = settled_at(system, z)
-        return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, foreseen, drag)
+        return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, predicted, drag)
 
     def slope(there: System) -> float:
         return float(motions @ there.residual)
 
-    return searched(after, slope, float(motions @ (system.residual + system.tangent @ forces)))
+    return line_search(after, slope, float(motions @ (system.residual + system.tangent @ forces)))

@@ -1,21 +1,21 @@
-"""How far a place is from something rigid with a straight, broken or curved edge, in the frame of its body.
+"""Signed distance of points from a rigid body's straight, broken or curved edge, in the frame of the body.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-y       place in the body's frame
+y       point in the body's frame
 d, n    distance, negative behind the edge, and its gradient, a unit vector
 τ, b    n turned clockwise; the second derivative of d is b τ τᵀ
-P, t    a place where n or b jumps lies on the straight line through P across t
+P, t    a place where n or b jumps lies on the straight line through P normal to t
 ======  =====================================================================================
 
-An edge runs with the free side to its left; a side to the right is one that runs the other way.  Where it ends, what is
-rigid goes straight back: two more sides, at right angles to the first and the last piece.  They go on without end, but
-to where they meet each other, which is a corner too, or the edge from behind.  In front of a corner that juts out d is
-the distance from the corner, b = 1/d; behind it the nearer side counts, and n jumps on the line that halves the angle.
-At a corner that juts in it is the other way round.
+The free side lies to the left of an edge; an edge with the free side to the right is reversed. At an end of the edge
+the rigid body continues straight back, along two more sides at right angles to the first and last piece. The backward
+sides are infinite unless they intersect, at a further corner, or meet the edge from behind. In front of a convex
+corner d is the distance from the corner and b = 1/d; behind the corner the nearer side counts, and n jumps on the
+bisector. At a concave corner front and back are exchanged.
 
-So of a graph, with b = κ/(1 + κ d) where κ is its curvature, positive where it juts out.
+For a graph b = κ/(1 + κ d), with the curvature κ positive where the body is convex.
 """
 
 from collections.abc import Sequence
@@ -30,16 +30,16 @@ from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 from fea_reference.state import Complex, multiplied, summed
 
-_SAME = 1e-6  # as near as a scene's places have to be
-_SAMPLES = 257  # of a graph, from which the nearest place is sought
-_PIECES = 64  # of a graph, as what a beam goes through
+_SAME = 1e-6  # m: accepted distance of coinciding points of a scene
+_SAMPLES = 257  # points of a graph for the initial guess of the closest point
+_PIECES = 64  # pieces of a graph for the crossing check
 _NEWTON_STEPS = 30
-_ARRIVED = 1e-9  # of the span: the error that the last step leaves is its square
+_ARRIVED = 1e-9  # times the span: last Newton step, with a quadratically smaller error
 
 
 @dataclass(frozen=True, slots=True)
 class Near:
-    """d (k,), n (2, k), b (k,), and whether the nearest place is a corner (k,), of places (2, k)."""
+    """d (k,), n (2, k), b (k,) of points (2, k), and True (k,) where the closest point is a corner."""
 
     distance: Array
     normal: Array
@@ -49,60 +49,60 @@ class Near:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corners:
-    """``points`` P (2, c) between two straight sides each: tangents and normals (2, c) before and behind."""
+    """Corners between two straight sides: ``points`` P, tangents and normals before and behind, (2, c) all."""
 
     points: Array
     tangents: tuple[Array, Array]
     normals: tuple[Array, Array]
 
     @property
-    def halving(self) -> Array:
-        """t (2, c) of the lines that halve the angles."""
+    def bisectors(self) -> Array:
+        """Tangents t (2, c) normal to the bisectors' lines."""
         both = self.tangents[0] + self.tangents[1]
         return np.asarray(both / np.hypot(both[0], both[1]))
 
     @property
-    def jutting(self) -> NDArray[np.bool_]:
-        """Which jut out, (c,)."""
+    def convex(self) -> NDArray[np.bool_]:
+        """True (c,) for convex corners."""
         a, b = self.tangents
         return np.asarray(a[0] * b[1] - a[1] * b[0] < 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HalfPlane:
-    """A straight edge without ends through ``point`` (2,), ``normal`` (2,)."""
+    """An infinite straight edge through ``point`` (2,) with ``normal`` (2,)."""
 
     point: Array
     normal: Array
 
     @property
     def corners(self) -> Corners:
-        """None."""
+        """No corners."""
         none = np.empty((2, 0))
         return Corners(none, (none, none), (none, none))
 
     @property
     def chain(self) -> Array:
-        """Nothing that a beam could go through without being seen behind it, (2, 0)."""
+        """No polyline (2, 0): a body behind an infinite line cannot be passed through unnoticed."""
         return np.empty((2, 0))
 
     @property
     def tips(self) -> tuple[Array, Array]:
-        """None, see :class:`Broken`."""
+        """No convex corners, see :class:`Broken`."""
         return np.empty((2, 0)), np.empty((2, 0))
 
     @property
     def straight(self) -> bool:
-        """Whether all of it is but for corners."""
+        """True: without curved parts."""
         return True
 
     @property
     def extent(self) -> float:
-        """How deep behind the edge a place is still taken for one that has sunk in."""
+        """Largest depth behind the edge that counts as penetration."""
         return float(np.inf)
 
     def near(self, y: Array) -> Near:
-        """Distance and so on of places (2, k)."""
+        """Distance data of points (2, k)."""
         k = y.shape[1]
         return Near(
             self.normal @ (y - self.point[:, None]),
@@ -111,30 +111,30 @@ class HalfPlane:
             np.zeros(k, dtype=bool),
         )
 
-    def kept(self, y: Array, rest: Array) -> Array:
-        """d (k,) of places ``y`` + ``rest`` (2, k), with all digits."""
+    def exact_distance(self, y: Array, rest: Array) -> Array:
+        """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation."""
         return _across(self.normal[:, None], y, rest, self.point[:, None])
 
 
 @dataclass(frozen=True, eq=False)
 class Broken:
-    """An edge of straight pieces: the free side is to the left of what runs along ``points`` (2, m+1).
+    """An edge of straight pieces along ``points`` (2, m+1), free side to the left.
 
-    Where the last is the first it goes round and has no ends.
+    The edge is closed if the last point is the first.
     """
 
     points: Array
 
     @cached_property
     def corners(self) -> Corners:
-        """Its corners, and those at its ends."""
+        """Corners between the pieces and at the ends."""
         tau = self._tangents
         if self.closed:
             before = np.roll(tau, 1, axis=1)
             return Corners(self.points[:, :-1], (before, tau), (_left(before), _left(tau)))
         first, last = _left(tau[:, :1]), -_left(tau[:, -1:])
         points, before, behind = self.points, np.column_stack([first, tau]), np.column_stack([tau, last])
-        if self._round_behind:
+        if self._closed_behind:
             corner = self.points[:, -1:] + self._back[1] * last
             points, before = np.column_stack([points, corner]), np.column_stack([before, last])
             behind = np.column_stack([behind, first])
@@ -142,27 +142,27 @@ class Broken:
 
     @cached_property
     def tips(self) -> tuple[Array, Array]:
-        """Corners that jut out, (2, t), and the mean direction (2, t) of what may press there."""
+        """Convex corners (2, t) and the mean directions (2, t) of their contact forces."""
         return _tips(self.corners)
 
     @property
     def straight(self) -> bool:
-        """Whether all of it is but for corners."""
+        """True: without curved parts."""
         return True
 
     @cached_property
     def extent(self) -> float:
-        """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
+        """Largest depth behind the edge that counts as penetration, a share of the edge's size."""
         return 0.25 * float(np.hypot(*np.ptp(self.points, axis=1)))
 
     @property
     def chain(self) -> Array:
-        """The edge in straight pieces, free side to the left, (2, m+1)."""
+        """Boundary polyline (2, m+1), free side to the left."""
         return self.points
 
     def near(self, y: Array) -> Near:
-        """Distance and so on of places (2, k)."""
-        nearest, t, away = self._foot(y)
+        """Distance data of points (2, k)."""
+        nearest, t, away = self._closest_side(y)
         _, _, low, high = self._sides
         normals = self._normals
         side = normals.take(nearest, axis=1)
@@ -171,9 +171,9 @@ class Broken:
         d = side[0] * away[0] + side[1] * away[1]
         if not corner.any():
             return Near(d, side, np.zeros(d.size), corner)
-        # at a corner both of its sides say on which of them a place is
+        # at a corner the sum of both normals gives the sign of the distance
         neighbour = np.where(before, nearest - 1, nearest + 1)
-        round_it = self.closed or self._round_behind
+        round_it = self.closed or self._closed_behind
         neighbour = neighbour % low.size if round_it else np.minimum(np.maximum(neighbour, 0), low.size - 1)
         both = side + np.where(corner, normals.take(neighbour, axis=1), 0.0)
         r_corner = np.hypot(away[0], away[1])
@@ -187,9 +187,9 @@ class Broken:
             corner,
         )
 
-    def kept(self, y: Array, rest: Array) -> Array:
-        """d (k,) of places ``y`` + ``rest`` (2, k), with all digits."""
-        near, (side, t, _) = self.near(y), self._foot(y)
+    def exact_distance(self, y: Array, rest: Array) -> Array:
+        """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation."""
+        near, (side, t, _) = self.near(y), self._closest_side(y)
         tangents, first, _, _ = self._sides
         begins = first.take(side, axis=1)
         away, more = summed(y, -(begins + t * tangents.take(side, axis=1)))
@@ -197,11 +197,11 @@ class Broken:
         round_it = np.sign(near.distance) * np.hypot(away[0], away[1])
         return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
 
-    def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
-        """The side (k,) that is nearest to places (2, k), how far along it that is (k,), and the way from there."""
+    def _closest_side(self, y: Array) -> tuple[Ints, Array, Array]:
+        """Closest side (k,) of points (2, k), distance (k,) along the side, and vector from the closest point."""
         tangents, first, low, high = self._sides
         begins, back = self._complex
-        # along and across each side, from where it begins
+        # components along and across every side, from its first point
         w = ((y[0] + 1j * y[1]) - begins) * back
         on_line = w.real
         t = np.minimum(np.maximum(on_line, low[:, None]), high[:, None])
@@ -212,13 +212,13 @@ class Broken:
 
     @cached_property
     def _complex(self) -> tuple[Complex, Complex]:
-        """First points and conjugate tangents of the sides, (m+2, 1) each, as complex numbers."""
+        """First points and conjugate tangents of the sides, (m+2, 1) both, as complex numbers."""
         tangents, first, _, _ = self._sides
         return (first[0] + 1j * first[1])[:, None], (tangents[0] - 1j * tangents[1])[:, None]
 
     @cached_property
     def _sides(self) -> tuple[Array, Array, Array, Array]:
-        """Tangents and first points (2, m+2), and between which distances from these the sides lie (m+2,)."""
+        """Tangents and first points (2, m+2) of the sides, and their range (m+2,) of distances from the first point."""
         tau = self._tangents
         length = np.hypot(*np.diff(self.points, axis=1))
         if self.closed:
@@ -235,38 +235,38 @@ class Broken:
 
     @cached_property
     def _normals(self) -> Array:
-        """To the left of them, (2, m+2)."""
+        """Normals (2, m+2) to the left of the sides."""
         return _left(self._sides[0])
 
     @cached_property
     def _back(self) -> Array:
-        """How far the sides straight back go from where the edge begins and ends, (2,)."""
-        each = self._met_each_other
+        """Lengths (2,) of the backward sides at both ends of the edge."""
+        common = self._common_point
         tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
         length = np.hypot(*np.diff(self.points, axis=1))
-        found = []
+        lengths = []
         for i in (0, 1):
             far, along = _crossing(ends[:, i], tau[:, i], self.points[:, :-1], self._tangents)
             meets = (far > _SAME) & (along >= 0.0) & (along <= length)
-            found.append(min(float(far[meets].min(initial=np.inf)), float(each[i])))
-        return np.array(found)
+            lengths.append(min(float(far[meets].min(initial=np.inf)), float(common[i])))
+        return np.array(lengths)
 
     @property
-    def _met_each_other(self) -> Array:
-        """How far from there they meet each other, (2,); infinite where they do not."""
+    def _common_point(self) -> Array:
+        """Lengths (2,) of the backward sides up to their common point; infinite without a common point."""
         tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
         far, along = _crossing(ends[:, 0], tau[:, 0], ends[:, 1:], tau[:, 1:])
         apart = np.append(far, along)
         return apart if (apart > _SAME).all() else np.full(2, np.inf)
 
     @cached_property
-    def _round_behind(self) -> bool:
-        """Whether what is rigid ends where its two sides meet."""
-        return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._met_each_other).all())
+    def _closed_behind(self) -> bool:
+        """True if the body ends where its two backward sides meet."""
+        return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._common_point).all())
 
     @cached_property
     def closed(self) -> bool:
-        """Whether the edge goes round."""
+        """True if the edge is closed."""
         return bool(np.all(self.points[:, 0] == self.points[:, -1]))
 
     @property
@@ -277,10 +277,10 @@ class Broken:
 
 @dataclass(frozen=True, eq=False)
 class Graph:
-    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with y₁ in the ``span``; free where ``sign`` (y₂ − f) > 0.
+    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with y₁ in ``span``; free where ``sign`` (y₂ − f) > 0.
 
-    ``f`` is a polynomial of the way from the span's middle: from afar, what is narrow has terms that are thousands of
-    times their sum, and the place of its edge would be rounded to as much.
+    ``f`` is a polynomial of the distance from the middle of the span. About a distant origin the terms of a narrow
+    graph would exceed their sum a thousandfold, with a corresponding round-off of the edge.
     """
 
     f: Polynomial
@@ -290,7 +290,7 @@ class Graph:
 
     @cached_property
     def corners(self) -> Corners:
-        """Those at its ends."""
+        """Corners at both ends."""
         ends = np.array(self.span if self._forwards else self.span[::-1])
         points, tau, _ = self._at(ends)
         before = np.column_stack([_left(tau[:, :1]), tau[:, 1:]])
@@ -299,7 +299,7 @@ class Graph:
 
     @cached_property
     def tips(self) -> tuple[Array, Array]:
-        """Corners that jut out and the places of the ``chain``, (2, t), and the directions (2, t) of what may press."""
+        """Convex corners and points of the ``chain``, (2, t), and the directions (2, t) of their contact forces."""
         v = np.linspace(*self.span, _PIECES + 1)[1:-1]
         points, tau, _ = self._at(v)
         ends, out = _tips(self.corners)
@@ -307,23 +307,23 @@ class Graph:
 
     @property
     def straight(self) -> bool:
-        """Whether all of it is."""
+        """True for a straight graph."""
         return not self.f.coef[2:].any()
 
     @cached_property
     def extent(self) -> float:
-        """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
+        """Largest depth behind the edge that counts as penetration, a share of the edge's size."""
         low, high = self._at(np.array(self.span))[0].T
         return 0.25 * float(np.hypot(*(high - low)))
 
     @property
     def chain(self) -> Array:
-        """The edge in straight pieces, free side to the left, (2, m+1)."""
+        """Boundary polyline (2, m+1), free side to the left."""
         v = np.linspace(*self.span, _PIECES + 1)
         return self._at(v if self._forwards else v[::-1])[0]
 
     def near(self, y: Array) -> Near:
-        """Distance and so on of places (2, k)."""
+        """Distance data of points (2, k)."""
         at = self._nearest(y)
         point, tau, kappa = self._at(at)
         away = y - point
@@ -335,7 +335,7 @@ class Graph:
         past &= r > 0.0
         distance, normal = np.where(past, r, d), np.where(past, away / np.where(past, r, 1.0), side)
         bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
-        # behind the edge the sides straight back may be nearer, and beyond its ends they are
+        # behind the edge the backward sides may be nearer; beyond the ends they are the nearest
         if (behind := d < 0.0).any():
             corners, end = self.corners, np.array([at == first, at == last])
             for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
@@ -346,13 +346,13 @@ class Graph:
                 bend = np.where(nearer, 0.0, bend)
         return Near(distance, normal, bend, past & ~behind)
 
-    def kept(self, y: Array, rest: Array) -> Array:
-        """d (k,) of places ``y`` + ``rest`` (2, k), to what the edge's own places are rounded to."""
+    def exact_distance(self, y: Array, rest: Array) -> Array:
+        """d (k,) of points ``y`` + ``rest`` (2, k), up to round-off of the points of the edge."""
         near = self.near(y)
         return np.asarray(near.distance + (near.normal * rest).sum(axis=0))
 
     def _nearest(self, y: Array) -> Array:
-        """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""
+        """Axis coordinate (k,) of the closest point of the edge to points (2, k)."""
         low, high = self.span
         v, w = y[::-1] if self.across else y
         samples, away = self._samples
@@ -361,7 +361,7 @@ class Graph:
             f, slope, second = self._f(at)
             rest = f - w
             bent = 1.0 + slope**2 + rest * second
-            # beyond the centre of curvature a place of the edge is farthest: it stays where it is
+            # beyond the centre of curvature the stationary point is a maximum of the distance: no step
             step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
             moved = np.minimum(np.maximum(at - step, low), high)
             done = float(np.abs(moved - at).max(initial=0.0)) <= _ARRIVED * (high - low)
@@ -372,16 +372,16 @@ class Graph:
 
     @cached_property
     def _samples(self) -> tuple[Array, Array]:
-        """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
+        """Axis coordinates (n,) of samples s, and a matrix from (y, 1) to −|s − y|² up to a term independent of s."""
         v = np.linspace(*self.span, _SAMPLES)
         f, _, _ = self._f(v)
         return v, np.array([2.0 * v, 2.0 * f, -(v**2 + f**2)])
 
     def _f(self, v: Array) -> tuple[Array, Array, Array]:
-        """f and its first two derivatives at ``v`` (k,), (k,) each, by Horner's scheme."""
+        """f and its first two derivatives at ``v`` (k,), (k,) all, by Horner's scheme."""
         f = slope = half = np.zeros_like(v)
         u = v - self._middle
-        for coefficient in self._falling:
+        for coefficient in self._descending_coefficients:
             half = half * u + slope
             slope = slope * u + f
             f = f * u + coefficient
@@ -392,13 +392,13 @@ class Graph:
         return 0.5 * (self.span[0] + self.span[1])
 
     @cached_property
-    def _falling(self) -> list[float]:
-        """Coefficients of f, the last first."""
-        return [float(one) for one in self.f.coef[::-1]]
+    def _descending_coefficients(self) -> list[float]:
+        """Coefficients of f, the highest first."""
+        return [float(coefficient) for coefficient in self.f.coef[::-1]]
 
     @property
     def _forwards(self) -> bool:
-        """Whether the free side lies to the left of what runs along the axis."""
+        """True if the edge runs in the direction of the axis with the free side to its left."""
         return (self.sign > 0.0) != self.across
 
     def _at(self, v: Array) -> tuple[Array, Array, Array]:
@@ -407,7 +407,7 @@ class Graph:
         long = np.hypot(1.0, slope)
         tau = np.array([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
         point = np.array([v, f])
-        kappa = -self.sign * second / long**3  # juts out where it bends away from the free side
+        kappa = -self.sign * second / long**3  # convex where the graph bends away from the free side
         return (point[::-1], tau[::-1], kappa) if self.across else (point, tau, kappa)
 
 
@@ -415,7 +415,10 @@ Outline = HalfPlane | Broken | Graph
 
 
 def outline_of(contact: EdgeContact, origin: Array, unit: float, places: Sequence[Array] = ()) -> Outline:
-    """The outline with ``origin`` (2,) m for its own and ``unit`` m for one; ends near ``places`` (2,) are there."""
+    """Outline of a contact, dimensionless with ``origin`` (2,) (m) and length ``unit`` (m).
+
+    Corner points near ``places`` (2,) are replaced by these.
+    """
     match contact:
         case HalfPlaneContact():
             normal = np.array(contact.normal) / np.abs(contact.normal).max()
@@ -435,9 +438,9 @@ def outline_of(contact: EdgeContact, origin: Array, unit: float, places: Sequenc
 
 
 def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, Array | None]:
-    """Directions (2,) in which the edge goes on from a ``place`` (2,) on it, free side to the left, and comes from.
+    """Directions (2,) of the edge away from a ``place`` (2,) on it: forward, free side to the left, and backward.
 
-    None where it does not, because it ends there.
+    None for a direction in which the edge ends there.
     """
     corners = outline.corners
     at = np.flatnonzero(np.hypot(*(corners.points - place[:, None])) <= near)
@@ -454,13 +457,16 @@ def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, 
 
 
 def _tips(corners: Corners) -> tuple[Array, Array]:
-    """Corners that jut out, (2, t), and the sums of their sides' normals (2, t)."""
-    some = corners.jutting
+    """Convex corners (2, t) and the sums of their sides' normals (2, t)."""
+    some = corners.convex
     return corners.points[:, some], (corners.normals[0] + corners.normals[1])[:, some]
 
 
 def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple[Array, Array]:
-    """How far (k,) a straight line goes to others, and these from their ``places`` (2, k); infinite if parallel."""
+    """Distances (k,) along a straight line to its crossings with others, and along the others from ``places`` (2, k).
+
+    Infinite for parallel lines.
+    """
     across = ahead[0] * aheads[1] - ahead[1] * aheads[0]
     parallel = np.abs(across) <= _SAME
     x, y = places - place[:, None]
@@ -470,7 +476,7 @@ def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple
 
 
 def _across(normal: Array, y: Array, rest: Array, point: Array) -> Array:
-    """n·(y + rest − point) of places (2, k), with normals and points (2, k) or (2, 1): it loses no digits far away."""
+    """n·(y + rest − point) of points (2, k), with normals and points (2, k) or (2, 1), without cancellation."""
     away, more = summed(y, -point)
     (a, a_error), (b, b_error) = multiplied(normal[0], away[0]), multiplied(normal[1], away[1])
     value, error = summed(a, b)
@@ -478,5 +484,5 @@ def _across(normal: Array, y: Array, rest: Array, point: Array) -> Array:
 
 
 def _left(tangents: Array) -> Array:
-    """Tangents (2, k) turned counter-clockwise."""
+    """Vectors (2, k) turned counter-clockwise by a right angle."""
     return np.array([-tangents[1], tangents[0]])

@@ -1,21 +1,21 @@
-"""A beam that a joint holds on what it may lie on: if it is pinned there, it cannot turn into the edge.
+"""Angle stop at a beam's pinned end on its own contact edge: the beam cannot turn into the edge.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-P       the joint, on the edge (half of the thickness from it, for a beam that touches by its own edge)
+P       the joint, on the edge (half of the thickness from the edge for a thick beam)
 τ       along the edge at P, the free side to the left: τ₋ before, τ₊ behind
-β       angle from τ₊ to the direction in which the beam leaves the pin, counter-clockwise
+β       angle from τ₊ to the beam's direction out of the pin, counter-clockwise
 ======  =====================================================================================
 
-The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋).  Where the edge ends at P only one of the two holds, and if that is the second, β
-is counted from −τ₋ and is not positive.  A stop holds these limits: the tangent at the pin is what the gap beside it
-goes by, on however fine a mesh, and the moment of the pressure that would be there is the stop's.  With shear it is
-the section that is held, as by any stop; what the line beside it leans is seen to in :mod:`fea_reference.face`.
+The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋). Where the edge ends at P, only one of both limits holds; for the second limit β
+starts at −τ₋ and is not positive. A stop enforces the limits. On any mesh the gap beside the pin depends on the
+tangent at the pin. The stop's moment replaces the moment of the pressure there. With shear the stop holds the
+section, as any stop; :mod:`fea_reference.face` treats the lean of the line.
 
-What is drawn from rounded numbers leaves the pin beyond a limit by their rounding, and may stand there until the edge
-presses.  Then it lies along the edge: a flat part that is held at an angle δ to it would ask for a force of 6 EI δ/h²
-beside the pin, which is of no size as drawn and of any on short elements.
+Rounded numbers in a scene may place the beam beyond a limit. The stop permits this excess until the edge presses. The
+beam then lies along the edge. At an angle δ a straight part would need a force 6 EI δ/h² beside the pin, zero in the
+reference configuration and unbounded on short elements.
 """
 
 import math
@@ -31,21 +31,21 @@ from fea_reference.staying import frame_of
 from fea_reference.stops import StopPart
 
 Which = Literal["start", "end"]
-_OPEN = 1.5 * np.pi  # what is free beside an edge that ends at the pin
-_SAME = 1e-6  # of the beam's length or of the unit: as near as a scene's places have to be
+_OPEN = 1.5 * np.pi  # free angle beside an edge that ends at the pin
+_SAME = 1e-6  # beam lengths or units: tolerance of coinciding points in a scene
 
 
-def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> tuple[Outline, dict[Which, Array]]:
-    """The outline of what a beam may touch, and which of its ends are held on it, and where (2,).
+def ends_on_edge(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> tuple[Outline, dict[Which, Array]]:
+    """Outline of an edge, and the beam's ends held on it with their places (2,).
 
     Args:
         scene: the scene.
-        contact: one of its contacts.
+        contact: a contact of the scene.
         origin: of the frame, (2,) m.
-        unit: of its lengths, m.
+        unit: unit of length, m.
     """
     beam = scene.beams[contact.beam]
-    outline, held = outline_of(contact, origin, unit), dict[Which, Array]()
+    outline, ends_held = outline_of(contact, origin, unit), dict[Which, Array]()
     half = 0.5 * beam.thickness_at(np.array([0.0, 1.0])) / unit if contact.thick else np.zeros(2)
     ends: tuple[tuple[Which, BeamEnd], ...] = (("start", beam.start), ("end", beam.end))
     for (which, end), T in zip(ends, half, strict=True):
@@ -53,23 +53,23 @@ def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> t
             continue
         place = (np.array(scene.place_of(end.point)) - origin) / unit
         if abs(float(outline.near(place[:, None]).distance[0]) - T) <= _SAME:
-            held[which] = place
-    on_it = [] if contact.thick else list(held.values())
-    return outline_of(contact, origin, unit, on_it), held
+            ends_held[which] = place
+    on_it = [] if contact.thick else list(ends_held.values())
+    return outline_of(contact, origin, unit, on_it), ends_held
 
 
 def own_pins(
     scene: Scene, bodies: dict[str, tuple[int, Index | None]], ends: dict[tuple[str, str], tuple[int, float]], row: int
 ) -> tuple[StopPart, ...]:
-    """The stops by which contacts hold pinned ends; arguments as of :func:`fea_reference.stops.stops_of`."""
-    found: list[StopPart] = []
+    """Stops of pinned ends at contact edges; arguments as for :func:`fea_reference.stops.stops_of`."""
+    stops: list[StopPart] = []
     for name, contact in scene.contacts.items():
         if not isinstance(contact, EdgeContact):
             continue
         beam = scene.beams[contact.beam]
-        outline, held = held_on(scene, contact, *own_frame(beam))
+        outline, ends_held = ends_on_edge(scene, contact, *beam_frame(beam))
         number, dofs = bodies[contact.body]
-        for which, place in held.items():
+        for which, place in ends_held.items():
             end = beam.start if which == "start" else beam.end
             if not isinstance(end, PinnedEnd):
                 continue
@@ -79,23 +79,23 @@ def own_pins(
             limits: tuple[float | None, float | None]
             if ahead is not None:
                 widest = None if back is None else float(np.remainder(_angle(back) - _angle(ahead), 2.0 * np.pi))
-                angle = _about(along - _angle(ahead), 0.5 * (_OPEN if widest is None else widest))
+                angle = _angle_near(along - _angle(ahead), 0.5 * (_OPEN if widest is None else widest))
                 limits = 0.0, widest
             elif back is not None:
-                angle, limits = _about(along - _angle(back), -0.5 * _OPEN), (None, 0.0)
+                angle, limits = _angle_near(along - _angle(back), -0.5 * _OPEN), (None, 0.0)
             else:
                 continue
             least, most = limits
             beyond = max(0.0, 0.0 if least is None else least - angle, 0.0 if most is None else angle - most)
             phi = None if dofs is None else int(dofs[2])
-            found.append(
+            stops.append(
                 StopPart(
                     f"{name}.{which}",
                     end.point,
                     number,
                     theta,
                     phi,
-                    row + len(found),
+                    row + len(stops),
                     angle - drawn,
                     least,
                     most,
@@ -104,29 +104,29 @@ def own_pins(
                     beyond,
                 )
             )
-    return tuple(found)
+    return tuple(stops)
 
 
-def own_frame(beam: Beam) -> tuple[Array, float]:
-    """Origin (2,) and unit, m, by which places of a beam are known in whatever units a scene is drawn: its own."""
+def beam_frame(beam: Beam) -> tuple[Array, float]:
+    """Origin (2,) and unit (m) of a beam's own frame, independent of the scene's units."""
     start = np.array(beam.curve.start)
     return start, float(max(np.hypot(*(np.array(beam.curve.end) - start)), beam.thickest))
 
 
 def _moves_with(scene: Scene, point: str, body: str) -> bool:
-    """Whether a point is the body's, or pinned to one of its own; bodies that stay are one."""
+    """True if the point belongs to the body or is pinned to a point of it; all fixed bodies count as one."""
     points = {point}
     for pin in scene.pins.values():
         if point in pin.points:
             points.update(pin.points)
     frame = frame_of(scene, body)
-    return any(frame_of(scene, scene.body_of(each)) == frame for each in points)
+    return any(frame_of(scene, scene.body_of(name)) == frame for name in points)
 
 
 def _angle(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def _about(angle: float, middle: float) -> float:
-    """An angle, in the turn about ``middle``."""
+def _angle_near(angle: float, middle: float) -> float:
+    """The angle within π of ``middle``."""
     return middle + math.remainder(angle - middle, 2.0 * np.pi)

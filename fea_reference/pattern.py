@@ -1,6 +1,6 @@
-"""Sums of local matrices as one sparse matrix, where the entries go being found once for all that stand alike.
+"""Assembly of local matrices into a sparse matrix, with remembered sparsity patterns.
 
-Where they stand changes with the elements in which contacts press, and seldom else.
+The pattern changes only with the elements in contact.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from scipy.sparse import csc_matrix
 from cprbm_scene.answer import Array
 from fea_reference.hermite import Index
 
-_KNOWN = 32  # patterns
+_KNOWN = 32  # number of remembered patterns
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,28 +25,28 @@ class Block:
 
     @property
     def key(self) -> tuple[bytes, ...]:
-        """Where its entries stand."""
+        """Key of the entries' positions."""
         return self.dofs.tobytes(), bytes(str(self.dofs.shape), "ascii")
 
     @property
     def rows(self) -> Index:
-        """Of the entries one after the other."""
+        """Rows of the entries, in order."""
         return np.broadcast_to(self.dofs[:, None], self.local.shape).ravel()
 
     @property
     def columns(self) -> Index:
-        """Of the same."""
+        """Columns of the entries, in order."""
         return np.broadcast_to(self.dofs[None, :], self.local.shape).ravel()
 
     @property
     def values(self) -> Array:
-        """The entries."""
+        """Values of the entries, in order."""
         return self.local.ravel()
 
 
 @dataclass(frozen=True, slots=True)
 class Single:
-    """Entries ``values`` at ``rows`` and ``columns``, (k,) each."""
+    """Entries ``values`` at ``rows`` and ``columns``, (k,) all."""
 
     rows: Index
     columns: Index
@@ -54,26 +54,26 @@ class Single:
 
     @property
     def key(self) -> tuple[bytes, ...]:
-        """Where they stand."""
+        """Key of the entries' positions."""
         return self.rows.tobytes(), self.columns.tobytes()
 
 
 @dataclass(frozen=True, slots=True)
 class _Pattern:
-    """``place`` (k,) of each entry among those of the matrix ``found``."""
+    """Position ``place`` (k,) of every entry among the data of the matrix ``template``."""
 
     place: Index
-    found: csc_matrix
+    template: csc_matrix
 
     def filled(self, values: Array) -> csc_matrix:
         """The matrix with other values (k,)."""
-        matrix = copy(self.found)  # what it shares is where its entries stand, and that they are in order
-        matrix.data = np.bincount(self.place, values, self.found.nnz)
+        matrix = copy(self.template)  # shares the sorted structure
+        matrix.data = np.bincount(self.place, values, self.template.nnz)
         return matrix
 
 
 class Patterns:
-    """Those of one model's matrices."""
+    """Remembered sparsity patterns of a model."""
 
     def __init__(self, size: int) -> None:
         self._size = size
@@ -87,16 +87,16 @@ class Patterns:
         if known is not None:
             return known.filled(values)
         rows, columns = (np.concatenate([getattr(block, of) for block in blocks]) for of in ("rows", "columns"))
-        found = csc_matrix((values, (rows, columns)), (self._size, self._size))
+        assembled = csc_matrix((values, (rows, columns)), (self._size, self._size))
         if len(self._known) >= _KNOWN:
             self._known.clear()
-        # what is seen once may never be again
-        self._known[key] = _pattern(found, rows, columns) if key in self._known else None
-        return found
+        # a pattern is kept from its second use on
+        self._known[key] = _pattern(assembled, rows, columns) if key in self._known else None
+        return assembled
 
 
-def _pattern(found: csc_matrix, rows: Index, columns: Index) -> _Pattern:
-    """Where entries at ``rows`` and ``columns`` (k,) stand in the matrix that they make."""
-    size = found.shape[0]
-    standing = np.repeat(np.arange(size), np.diff(found.indptr)) * size + found.indices
-    return _Pattern(np.searchsorted(standing, columns * size + rows), found)
+def _pattern(matrix: csc_matrix, rows: Index, columns: Index) -> _Pattern:
+    """Pattern of entries at ``rows`` and ``columns`` (k,) in their assembled matrix."""
+    size = matrix.shape[0]
+    standing = np.repeat(np.arange(size), np.diff(matrix.indptr)) * size + matrix.indices
+    return _Pattern(np.searchsorted(standing, columns * size + rows), matrix)

@@ -1,16 +1,16 @@
-"""A line's arc length by its variable in pieces, each a sum of Chebyshev polynomials, and the variable by arc length.
+"""Arc length of a line by its parameter, as piecewise Chebyshev sums, and the inverse function.
 
 =======  =============================================================================
 symbol   meaning
 =======  =============================================================================
-v        the variable, from the line's first value to its last
+v        the parameter, from the line's first value to the last
 S(v)     arc length, m, |S'| the speed
 t        place within a piece, in [−1, 1]
 T_k      Chebyshev polynomials
 =======  =============================================================================
 
-S' is Σ c_k T_k(t) on pieces, which are cut in two until the last of the coefficients vanish; its integral is another
-such sum.  The place at a length is the root of S in its piece, by Newton's method kept within the piece.
+S' is Σ c_k T_k(t) on pieces, halved until the last coefficients vanish; the integral is another such sum. The
+parameter at a given length is the root of S in its piece, by Newton's method limited to the piece.
 """
 
 import math
@@ -23,20 +23,20 @@ from numpy.polynomial import chebyshev
 
 from cprbm_scene.answer import Array
 
-DEGREE = 24  # of the sum on one piece
-TAIL = 4  # coefficients that must have vanished
-VANISHED = 3e-14  # of the largest; what is left out behind them is smaller still
-SMALLEST = 2.0**-10  # of what lies between two given ends: no piece is cut below
+DEGREE = 24  # of the sum on a piece
+TAIL = 4  # number of last coefficients that have to vanish
+VANISHED = 3e-14  # times the largest coefficient; the truncation error is smaller still
+SMALLEST = 2.0**-10  # times the distance of two given ends: smallest piece
 ITERATIONS = 50
 POINTS = chebyshev.chebpts1(DEGREE + 1)
-VALUES = chebyshev.chebvander(POINTS, DEGREE)  # T_k at the points at which the sum is S'
+VALUES = chebyshev.chebvander(POINTS, DEGREE)  # T_k at the collocation points of S'
 
 Speed = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """``begin`` and ``half`` the width (both of v, signed) and S from ``begin`` as a sum of T_k (``series``)."""
+    """A piece: ``begin`` and ``half`` width (of v, signed), and S from ``begin`` as a sum of T_k (``series``)."""
 
     begin: float
     half: float
@@ -49,7 +49,7 @@ class Piece:
 
 
 def pieces_of(speed: Speed, ends: Sequence[float]) -> list[Piece]:
-    """Between given ``ends`` pieces on each of which the sum holds the ``speed`` to round-off, in order."""
+    """Pieces between given ``ends``, in order, whose sums represent the ``speed`` to round-off."""
     done: list[Piece] = []
     for first, last in pairwise(ends):
         open_ = [(first, 0.5 * (last - first))]
@@ -82,12 +82,12 @@ def places(speed: Speed, pieces: Sequence[Piece], fractions: Array) -> Array:
 
 
 def _root(speed: Speed, piece: Piece, lengths: Array) -> Array:
-    """v at ``lengths`` (n,) from the piece's beginning."""
+    """v at ``lengths`` (n,) from the beginning of the piece."""
     t = 2.0 * lengths / piece.length - 1.0
     for _ in range(ITERATIONS):
         missing = lengths - chebyshev.chebval(t, piece.series)
         step = missing / (abs(piece.half) * speed(piece.begin + piece.half * (t + 1.0)))
         t, before = np.clip(t + step, -1.0, 1.0), t
-        if np.max(np.abs(t - before)) <= 1e-9:  # squared, it is below round-off
+        if np.max(np.abs(t - before)) <= 1e-9:  # the square is below round-off
             break
     return np.asarray(piece.begin + piece.half * (t + 1.0))

@@ -1,15 +1,15 @@
-"""Equilibrium to round-off where penalties are so stiff that what gaps are rounded to is felt as a force.
+"""Equilibrium to round-off with stiff penalties, where the round-off of gaps is a significant force.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 g, k    gap at a point of a contact, and its stiffness
-λ       push of the point
+λ       contact force of the point
 ======  =====================================================================================
 
-A gap is rounded to some units of the lengths of which it is the difference, and −k g to k times that, anew in every
-state.  Taken once for what they are, pushes that go on as λ − k ∂g δz with the steps δz that are left are free of it:
-λ = −k g holds as well as gaps are known, and forces balance as well as elements tell.
+A gap is a difference of lengths and has their round-off; −k g has k times this error, different in every state.
+Contact forces taken once and continued as λ − k ∂g δz along the remaining steps δz are free of new errors. Then λ =
+−k g holds up to the round-off of gaps, and forces balance up to the round-off of elements.
 """
 
 import numpy as np
@@ -17,28 +17,28 @@ import numpy as np
 from cprbm_scene.answer import Array
 from fea_reference.advance import advance
 from fea_reference.model import Model
-from fea_reference.system import System, pushed
+from fea_reference.system import System, with_point_forces
 
 _STEPS = 4
-_FAR = 1e-9  # of lengths over the longest beam, and of angles: a state that is as near has the same contacts
-_BETTER = 0.1  # of what was unbalanced
+_FAR = 1e-9  # relative to the longest beam, or rad: states as near as this have the same contacts
+_BETTER = 0.1  # times the initial residual
 
 
-def poised(model: Model, values: Array, system: System, accepted: float) -> System:
-    """An equilibrium under ``values`` with no more than is ``accepted`` unbalanced, beside one that has more.
+def without_gap_round_off(model: Model, values: Array, system: System, accepted: float) -> System:
+    """Equilibrium under ``values`` near ``system``, with a residual of at most ``accepted``.
 
-    The same if none is found.
+    Without success ``system`` is returned, or the last state if its residual is much smaller.
     """
-    found, z = system, system.z
-    pushes = {one.pair: one.pushes for one in system.touches}
+    corrected, z = system, system.z
+    pushes = {contact.pair: contact.pushes for contact in system.touches}
     for _ in range(_STEPS):
-        step = found.solve(-found.residual)
+        step = corrected.solve(-corrected.residual)
         if step is None or not float(np.abs(step[model.moving]).max()) <= _FAR:
             return system
-        pushes = {one.pair: one.foreseen(step) for one in found.touches}
+        pushes = {contact.pair: contact.predicted_forces(step) for contact in corrected.touches}
         z = advance(model, z, step)
-        found = pushed(model, system, values, z, pushes)
-        if float(np.abs(found.residual).max()) <= accepted:
-            return found
-    better = float(np.abs(found.residual).max()) <= _BETTER * float(np.abs(system.residual).max())
-    return found if better else system
+        corrected = with_point_forces(model, system, values, z, pushes)
+        if float(np.abs(corrected.residual).max()) <= accepted:
+            return corrected
+    better = float(np.abs(corrected.residual).max()) <= _BETTER * float(np.abs(system.residual).max())
+    return corrected if better else system

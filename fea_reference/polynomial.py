@@ -1,9 +1,9 @@
-"""A neutral line that is a polynomial, y = f(x) or x = f(y), by fractions of its arc length.
+"""A polynomial neutral line, y = f(x) or x = f(y), by fractions of its arc length.
 
 =======  =============================================================================
 symbol   meaning
 =======  =============================================================================
-v        the variable, from the range's first value to its last, m
+v        the variable, from the range's first value to the last, m
 S(v)     arc length, m, S' = √(1 + f'²), :mod:`fea_reference.pieces`
 =======  =============================================================================
 """

@@ -1,11 +1,12 @@
-"""The bending moment and the normal force along a beam, by statics.
+"""Bending moment and normal force along a beam, by statics.
 
-The moment at s is what balances the forces on the piece of an element between its first node and s: the
-element's own end force and end moment there, and the contact's forces at the Gauss points in between.  End
-forces follow from equilibrium of the whole and not from differentiated displacements, so the moment is as
-accurate as the nodes' positions (of fourth order), continuous across the nodes, and keeps the contact's kink
-where it is.  The contact's share of the nodal forces is taken out of the end forces first, for it acts within
-the element; what it has in the elements beside, by their shear, is balanced in each.  So are loads on the beam.
+The moment at s balances the forces on the piece of an element between its first node and s: the element's end force
+and end moment, and the contact forces at Gauss points in between. End forces follow from equilibrium, not from
+differentiated displacements. The moment is therefore as accurate as the nodes' positions (fourth order), continuous
+at nodes, and has the kinks of contacts in place.
+
+A contact acts within an element, so that its share of nodal forces is first removed from the end forces. Its share in
+neighbouring elements, by their shear, is balanced within these. Loads on beams are treated in the same way.
 """
 
 import numpy as np
@@ -20,16 +21,16 @@ _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)))
 
 
 def normal_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
-    """N at ``fractions`` (k,) of the arc length, without units, positive in tension."""
+    """N (k,) at ``fractions`` (k,) of the arc length, dimensionless, positive in tension."""
     zeta = fractions * (beam.elements.stop - beam.elements.start)
     tangent = model.line(beam, system.z).at(zeta)[1]
     return np.asarray((section_force(model, system, beam, fractions) * tangent).sum(axis=0) / np.hypot(*tangent))
 
 
 def section_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
-    """Force of the part beyond ``fractions`` (k,) of the arc length on the part before, (2, k), without units."""
+    """Force (2, k) of the part beyond ``fractions`` (k,) of the arc length on the part before, dimensionless."""
     line, zeta = model.line(beam, system.z), fractions * (beam.elements.stop - beam.elements.start)
-    ends, place, _, force = _cut(model, system, beam)
+    ends, place, _, force = _end_forces(model, system, beam)
     e, _ = line.locate(zeta)
     owner, _ = line.locate(place)
     before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
@@ -43,7 +44,7 @@ def section_force(model: Model, system: System, beam: BeamPart, fractions: Array
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
     line = model.line(beam, system.z)
-    ends, place, point, force = _cut(model, system, beam)
+    ends, place, point, force = _end_forces(model, system, beam)
     owner, _ = line.locate(place)
     zeta = fractions * line.n
     e, _ = line.locate(zeta)
@@ -59,9 +60,10 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     return np.asarray(moment)
 
 
-def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Array, Array]:
-    """Force and moment on every element's first node (3, n) without the shares of what acts within, and of contacts
-    places (k,), points and forces (2, k).
+def _end_forces(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Array, Array]:
+    """Forces and moments at first nodes without contacts and loads, and contacts' places, points and forces.
+
+    Force and moment (3, n) act on the first node of every element; places are (k,), points and forces (2, k).
     """
     ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)
@@ -84,7 +86,7 @@ def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Ar
 
 
 def _on_beam(touch: Touch, number: int) -> list[tuple[Array, Array, Array]]:
-    """Places, points and forces of one contact on one beam: on what is first in it, and what is second."""
+    """Places, points and forces of a contact on a beam, as its first and as its second beam."""
     parts = []
     if touch.pair.first == number:
         parts.append((touch.zeta, touch.x, touch.force))

@@ -1,22 +1,22 @@
-"""Whether a step has released energy: it has left its branch, however near the other one is.
+"""Energy-drop test: a step that releases energy has left its branch.
 
 ======  =========================================================================================
 symbol  meaning
 ======  =========================================================================================
-λ, h    value of what is stepped, and by how much a step changes it
-Π       the potential energy with what penalties store: what an equilibrium has least of
-F       dΠ/dλ along a branch: ∂Π/∂λ, as everything else is stationary
+λ, h    value of the stepped parameter, and its increment
+Π       potential energy with the energy of penalties, minimal in an equilibrium
+F       dΠ/dλ along a branch, equal to ∂Π/∂λ because Π is stationary
 ======  =========================================================================================
 
-Along a branch Π changes by the integral of F, which the rule of Hermite has to the fifth power of h:
+Along a branch Π changes by the integral of F, by Hermite's rule exact up to the fifth power of h:
 
     ΔΠ = h (F_a + F_b)/2 + h² (F′_a − F′_b)/12.
 
-A jump leaves less.  However short the step is then, what is missing stays, while what F changes by in it, the measure
-of what the rule may be off by, goes to zero with h but for the jump of F itself.  In a long step what is missing hides
-behind that; there it is F that has dropped where F_a + h (F′_a + F′_b)/2 says otherwise, or that rises where the step
-begins and falls where it ends: before a fold F falls ever faster, and the branch beyond may fall as well.  Where a
-contact lets go within a step, or F has a smooth top, either seems so, but the less the shorter the step.
+After a jump less energy is left. In ever shorter steps the missing energy is constant. The error bound of the rule,
+the change of F, vanishes with h except for the jump of F. In a long step the missing energy may hide in the error
+bound. Then F has dropped against F_a + h (F′_a + F′_b)/2, or F rises first and falls at the end of the step. Before a
+fold F falls ever faster, and F may also fall on the branch beyond. An opening contact or a smooth maximum of F has a
+similar effect, which vanishes with the step length.
 """
 
 import numpy as np
@@ -27,19 +27,20 @@ from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.model import DrivePart, Model
 from fea_reference.system import System, load_direction
 
-_OFF = 0.1  # of h times what F changes by: the most by which the rule is off on a branch
-_DROPPED = 0.6  # of what F changes by: by how much it may be less than its rates say
-_NOTICED = 0.01  # of F: less than that is a bend
-_ROUNDED = 1e-9  # of the energies themselves: Newton's residual and a face's corners leave 1e-10
-_NOTHING = 1e-13  # energy, in units, of a mechanism at rest: no branch ends there
+_OFF = 0.1  # times h and the change of F: largest error of the rule on a branch
+_DROPPED = 0.6  # times the change of F: accepted deficit against its derivatives
+_NOTICED = 0.01  # times F: negligible change
+_ROUNDED = 1e-9  # relative to the energies: Newton's residual and an edge's corners leave 1e-10
+_NOTHING = 1e-13  # energy of an unloaded mechanism: no branch ends there
 
 
-def released(
+def releases_energy(
     model: Model, load: int, acting: Acting, ends: tuple[tuple[System, Array, Array], tuple[System, Array, Array]]
 ) -> bool:
-    """Whether there is less energy at the second of a step's ``ends`` than the branch leads to from the first.
+    """True if a step's second end has less energy than the branch from the first end leads to.
 
-    Of each: the system, the values, and the rate (size,) by that of the ``load``; all without units, penalties alike.
+    For both ends: the system, the values, and the path tangent (size,) by the ``load``; dimensionless, with equal
+    penalties.
     """
     h = float(ends[1][1][load] - ends[0][1][load])
     energies = [penalised_energy(model, system, values) for system, values, _ in ends]
@@ -61,16 +62,16 @@ def released(
 
 
 def _force(model: Model, load: int, system: System, values: Array, h: float) -> float:
-    """F: of a drive what holds it, of a load, in whose value Π is a square, the quotient of differences."""
+    """F: for a drive its reaction, for a load a difference quotient, as Π is quadratic in its value."""
     part = model.stepped[load]
     if isinstance(part, DrivePart):
         return -float(system.z.values[part.row])
-    more, less = values.copy(), values.copy()
-    more[load] += h
-    less[load] -= h
-    return (potential_energy(model, system, more) - potential_energy(model, system, less)) / (2.0 * h)
+    raised, lowered = values.copy(), values.copy()
+    raised[load] += h
+    lowered[load] -= h
+    return (potential_energy(model, system, raised) - potential_energy(model, system, lowered)) / (2.0 * h)
 
 
 def _bend(model: Model, load: int, system: System, rate: Array, acting: Acting) -> float:
-    """F′ by the rate of everything else."""
+    """F′ from the path tangent."""
     return -float(load_direction(model, load, system.z, acting) @ rate)

@@ -1,4 +1,4 @@
-"""The numerical choices of the finite-element reference."""
+"""Numerical settings of the finite-element reference."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ Kinematics = Literal["bending", "stretch", "shear"]
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How finely and with which beam theory a scene is solved.
+    """Mesh, beam theory and numerical tolerances of a solution.
 
     Attributes:
-        elements: per beam, one number for all or one for each name.
-        kinematics: ``bending`` (exactly inextensible, no shear), ``stretch`` (with axial flexibility) or
-            ``shear`` (with axial and shear flexibility).
-        penetration: largest depth of overlap that the contact penalty may leave, as a fraction of the mean
-            thickness of the two beams (of a hundredth of the longest beam for contacts of lines). On a circle or an
-            edge the penalty is as stiff as the elements can follow, and the penetration asked only says how many of
-            them are too many; where a beam's end or a corner presses, it counts as between beams.
-        quadrature: Gauss points on each interval of a contact zone.
-        residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the
-            largest.
-        correction: last Newton correction (of lengths over the longest beam, and of angles) at which it is.
-        newton_limit: Newton iterations after which a load step is cut, unless they are just arriving.
-        iteration_limit: Newton iterations, of all load steps, after which a station is given up.
+        elements: number per beam, equal for all or by name.
+        kinematics: ``bending`` (exactly inextensible, no shear), ``stretch`` (with axial flexibility) or ``shear``
+            (with axial and shear flexibility).
+        penetration: largest penetration of contact penalties, relative to the mean thickness of the two beams (to a
+            hundredth of the longest beam for contacts of lines). On a circle or an edge the penalty is the stiffest
+            that the elements resolve; the penetration only limits the penalty on fine meshes. A beam's end or a
+            corner in contact counts as a pair of beams.
+        quadrature: Gauss points on every interval of a contact zone.
+        residual: unbalanced generalised force of an accepted equilibrium, relative to the largest force.
+        correction: last Newton correction of an accepted equilibrium (lengths relative to the longest beam, and
+            angles).
+        newton_limit: Newton iterations before a load step is cut, unless convergence is near.
+        iteration_limit: Newton iterations, over all load steps, before a station is given up.
 
     Raises:
         SceneError: a value is out of its bounds.
@@ -77,7 +77,7 @@ class Settings:
         """The number of elements of every beam.
 
         Raises:
-            SceneError: ``elements`` names a beam that is not there, or leaves one out.
+            SceneError: ``elements`` names an unknown beam or omits a beam.
         """
         names = list(beams)
         if not isinstance(self.elements, Mapping):
@@ -98,13 +98,13 @@ class Settings:
         return {name: self.elements[name] for name in names}
 
     def finer(self) -> Settings:
-        """The same with twice the elements."""
+        """The settings with twice the elements."""
         if isinstance(self.elements, Mapping):
             return replace(self, elements={name: 2 * n for name, n in self.elements.items()})
         return replace(self, elements=2 * self.elements)
 
     def plain(self) -> dict[str, object]:
-        """The choices as plain values."""
+        """The settings as plain values."""
         elements = self.elements
         return {
             "elements": dict(elements) if isinstance(elements, Mapping) else elements,

@@ -1,19 +1,18 @@
-"""How deep a contact in a point is to lie for the force that a Newton step foresees.
+"""Penetration of a point contact for the force predicted by a Newton step.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-F, d    push and depth of a contact in a point;  F* the push that the step foresees
-c       ∂g, the mean of the contact's points by their stiffness
-K       tangent of the system that the step was made from
-v       K⁻¹ c/(cᵀ K⁻¹ c): the motions that open the contact by one and cost least
+F, d    force and penetration of a point contact;  F* the force that the step predicts
+c       ∂g, the stiffness-weighted mean of the contact's points
+K       tangent of the system before the step
+v       K⁻¹ c/(cᵀ K⁻¹ c): the motion of least energy that opens the contact by one
 ======  =====================================================================================
 
-A step is right but for its square, and that is thousands of times what a contact under a stiff penalty is deep.  From
-a depth too large by itself Newton's method comes back by a third at a time, as F goes with d to the power 3/2, so that
-its iterations grow with the stiffness.  The depth that belongs to F* is known, however: what sinks in too far, or does
-not touch at all, is moved by that along v, which changes the forces of all else by next to nothing.  The equations,
-and with them the equilibria, are the same.
+A step has an error of second order, thousands of times the penetration under a stiff penalty. From an excessive
+penetration Newton's method reduces d by a third per iteration, as F ∝ d^(3/2), so that its iterations grow with the
+stiffness. The penetration of F* is known, however. A contact too deep or open after a step is moved to this
+penetration along v, with a negligible effect on other forces. The equations, and hence the equilibria, are unchanged.
 """
 
 from collections.abc import Mapping
@@ -29,76 +28,76 @@ from fea_reference.state import State
 from fea_reference.system import System
 from fea_reference.touch import Contact, Penalty, Touch
 
-_FALL = 1.5  # the power of the depth with which the push goes
-_WIDE = 4.0  # elements: a zone no wider may be a point
-_EVEN = 1e-2  # by which a push may differ from the one foreseen
+_FALL = 1.5  # exponent of the penetration in the force
+_WIDE = 4.0  # elements: largest width of a point contact's zone
+_EVEN = 1e-2  # accepted relative difference between force and predicted force
 _ROUNDS = 4
-_TOUCHING = 1e-9  # of the thickness: an overlap that is none
-_STIFF = 100.0  # times the opening that anything moves: beside a clamp, where it would cost much
-_MOST = 100.0  # times the push before: more is foreseen by a step that goes astray
+_TOUCHING = 1e-9  # thicknesses: negligible overlap
+_STIFF = 100.0  # times the opening: largest motion of v; beside a clamp v costs too much energy
+_MOST = 100.0  # times the previous force: a larger prediction belongs to a diverging step
 
 
 @dataclass(frozen=True, slots=True)
 class Depth:
-    """A contact in a point that was ``depth`` deep when it pushed with ``push``."""
+    """A point contact: its ``depth`` at the force ``push``."""
 
     depth: float
     push: float
 
     def at(self, push: float) -> float:
-        """How deep it is when it pushes with another."""
+        """Penetration at another force."""
         return float(self.depth * (push / self.push) ** (1.0 / _FALL))
 
 
 def known_depths(
     system: System, depths: Mapping[Contact, float], before: Mapping[Contact, Array]
 ) -> dict[Contact, Depth]:
-    """Of the contacts those whose ``depths`` and pushes ``before``, (k,) each, are known."""
-    found = {}
-    for one in system.touches:
-        push = float(before[one.pair].sum()) if one.pair in before else 0.0
-        deep = depths.get(one.pair, 0.0) > _TOUCHING * one.pair.scale
+    """Depths of all contacts with known ``depths`` and point forces ``before`` (k,)."""
+    known = {}
+    for contact in system.touches:
+        push = float(before[contact.pair].sum()) if contact.pair in before else 0.0
+        deep = depths.get(contact.pair, 0.0) > _TOUCHING * contact.pair.scale
         if deep and push > 0.0:
-            found[one.pair] = Depth(depths[one.pair], push)
-    return found
+            known[contact.pair] = Depth(depths[contact.pair], push)
+    return known
 
 
-def sunk(
+def with_predicted_depths(
     model: Model,
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
     system: System,
     z: State,
-    foreseen: Mapping[Contact, Array],
+    predicted: Mapping[Contact, Array],
     known: dict[Contact, Depth],
 ) -> State:
-    """The state near ``z``, to which a step from a ``system`` led, in which contacts in a point push as ``foreseen``.
+    """State near ``z``, after a step from ``system``, in which point contacts have the ``predicted`` forces.
 
-    ``known`` are depths of contacts, which are brought up to date.
+    The depths ``known`` are updated.
     """
-    for one in system.touches:
-        if one.pair not in known or not one.closed or np.ptp(one.zones.intervals) > _WIDE:
+    for contact in system.touches:
+        if contact.pair not in known or not contact.closed or np.ptp(contact.zones.intervals) > _WIDE:
             continue
-        push = min(float(foreseen[one.pair].sum()), _MOST * known[one.pair].push)
+        push = min(float(predicted[contact.pair].sum()), _MOST * known[contact.pair].push)
         opening = None
         for _ in range(_ROUNDS if push > 0.0 else 0):
-            there = touch(model, one.pair, penalties[one.pair], quadrature, z)
+            there = touch(model, contact.pair, penalties[contact.pair], quadrature, z)
             pushing = there.push if there.closed else 0.0
             if abs(pushing - push) <= _EVEN * push or (there.closed and np.ptp(there.zones.intervals) > _WIDE):
                 break
             if pushing > 0.0 and there.penetration > _TOUCHING * there.pair.scale:
-                known[one.pair] = Depth(there.penetration, pushing)
-            opening = _opening(model, system, one) if opening is None else opening
+                known[contact.pair] = Depth(there.penetration, pushing)
+            opening = _opening(model, system, contact) if opening is None else opening
             if opening is None:
                 break
-            z = advance(model, z, (-there.zones.least - known[one.pair].at(push)) * opening)
+            z = advance(model, z, (-there.zones.least - known[contact.pair].at(push)) * opening)
     return z
 
 
-def _opening(model: Model, system: System, one: Touch) -> Array | None:
-    """v, (size,)."""
+def _opening(model: Model, system: System, contact: Touch) -> Array | None:
+    """v (size,); None where the opening needs large motions."""
     c = np.zeros(model.size)
-    np.add.at(c, one.dofs, one.mean)
+    np.add.at(c, contact.dofs, contact.mean)
     v = system.solve(c)
     if v is None:
         return None

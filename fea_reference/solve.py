@@ -1,4 +1,4 @@
-"""A scene in, an answer out."""
+"""Solution of a scene by finite elements."""
 
 import logging
 import time
@@ -26,9 +26,9 @@ _DEFAULT = Settings()
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A scene made ready: the ``march`` stands at the undeformed state, and goes its way once.
+    """A discretised scene with single-use load-stepping state, initially unloaded.
 
-    ``seconds`` is how long that took.
+    ``seconds`` is the preparation time (s).
     """
 
     scene: Scene
@@ -37,7 +37,7 @@ class Prepared:
     seconds: float
 
     def answer(self) -> Answer:
-        """March, and hand back what :func:`answer` does.
+        """Answer of the scene, see :func:`answer`.
 
         Raises:
             SceneError: a stop forbids the assembly.
@@ -49,7 +49,7 @@ class Prepared:
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
         with one_thread():
             try:
-                known: dict[str, str] = {}  # contacts that have closed, with what was stepped
+                known: dict[str, str] = {}  # closed contacts, with the parameter stepped at their closing
                 assemble_ends(scene, march)
                 for stage in scene.stages:
                     course = _course(march, stage)
@@ -67,7 +67,10 @@ class Prepared:
                 ending, sentence = stopped.ending, stopped.sentence
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
         tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
-        left = [f"{end.sentence}; it was left for the state beside it to which the energy leads" for end in march.left]
+        bypassed = [
+            f"{end.sentence}; the solution continues on a nearby branch, found by energy descent"
+            for end in march.bypassed
+        ]
         return Answer(
             solver="fea",
             scene=scene.name,
@@ -77,21 +80,21 @@ class Prepared:
             stations=tuple(stations),
             events=(*events, *openings(scene, stations)),
             critical=tuple(march.critical),
-            gone_over=tuple(end.record for end in march.left),
+            gone_over=tuple(end.record for end in march.bypassed),
             seconds=self.seconds + time.perf_counter() - began,
-            notes=(*tested, *left),
+            notes=(*tested, *bypassed),
         )
 
 
 def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
-    """Make a scene ready without solving anything: the set-up of an answer, for those who time it by itself.
+    """Prepare a scene without solving, to time the preparation separately.
 
     Args:
-        scene: as of :func:`answer`.
-        settings: as of :func:`answer`.
+        scene: as for :func:`answer`.
+        settings: as for :func:`answer`.
 
     Returns:
-        The elements in the stress-free state; its ``answer`` solves.
+        The elements in the stress-free state; ``answer`` of the result solves the scene.
 
     Raises:
         SceneError: the settings do not fit the scene.
@@ -105,16 +108,16 @@ def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
 def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """Solve a scene by finite elements.
 
-    The bending theory converges with the fourth power of the element's length, stretch and shear with the
-    second (a curved element's axial and shear force are taken along its chord), from errors a hundred times
-    smaller than what they add to bending.  An answer that ends early holds the stations reached before.
+    The bending theory converges with the fourth power of the element's length. Stretch and shear converge with the
+    second power, because axial and shear forces of a curved element refer to the chord. Their errors start at a
+    hundredth of their contribution. An answer that ends early has the stations reached before.
 
     Args:
         scene: the problem statement.
         settings: numerical choices; by default 80 elements per beam, with stretch and shear.
 
     Returns:
-        Certified answers at the scene's stations, as far as they were reached; values are read-only arrays in SI, of
+        Certified answers at the scene's stations, up to the last reached; values are read-only arrays in SI, of
         the shapes in :mod:`cprbm_scene.answer`.
 
     Raises:
@@ -135,12 +138,12 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
 
 
 def _certified(scene: Scene, march: March, stage: Stage, station: float, closed: dict[str, str]) -> StationAnswer:
-    """The station's answer, if its certificate holds.
+    """The station's answer with its certificate.
 
-    ``closed`` is what was stepped as a contact closed: its closing is no value of anything else.
+    ``closed`` is the stepped parameter of every closing; a closing value belongs to this parameter only.
 
     Raises:
-        StoppedError: it does not.
+        StoppedError: the certificate fails.
     """
     certificate = certify(march)
     if not certificate.holds:
@@ -172,7 +175,7 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float, closed:
 
 
 def _course(march: March, stage: Stage) -> Course:
-    """What a stage steps, and over which span: from where it is, through all stations."""
+    """Stepped parameter of a stage and its span, from the present value through all stations."""
     load = [part.name for part in march.model.stepped].index(stage.steps)
-    ways = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
-    return Course(load, float(np.ptp(ways)) or 1.0, stage.name, stage.beyond)
+    values = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
+    return Course(load, float(np.ptp(values)) or 1.0, stage.name, stage.beyond)

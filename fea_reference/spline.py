@@ -1,12 +1,12 @@
-"""A neutral line that is a spline through points, by fractions of its arc length.
+"""A spline through points as neutral line, by fractions of its arc length.
 
 =======  =============================================================================
 symbol   meaning
 =======  =============================================================================
-v        parameter: at the points the distances between them, summed, m
-P        place less the start, m: a cubic of v between the points
+v        parameter: at the points their accumulated distances, m
+P        position minus start, m: a cubic of v between the points
 m        P' at the points
-h, d     length of a piece in v, and what P gains along it over h
+h, d     length of a piece in v, and increment of P over h
 S(v)     arc length, m, S' = |P'|, :mod:`fea_reference.pieces`
 =======  =============================================================================
 
@@ -14,11 +14,12 @@ The slopes m make P'' continuous at the points (C. de Boor, A Practical Guide to
 
     h_k m_{k−1} + 2 (h_{k−1} + h_k) m_k + h_{k−1} m_{k+1} = 3 (h_k d_{k−1} + h_{k−1} d_k)
 
-At an end with a direction m is its unit vector.  At one without, the third derivative is continuous at the next point:
+At an end with a direction m is the unit vector of the direction. At an end without, the third derivative is
+continuous at the next point (not-a-knot):
 
     h₁ m₀ + (h₀ + h₁) m₁ = ((h₀ + 2 (h₀ + h₁)) h₁ d₀ + h₀² d₁)/(h₀ + h₁)
 
-Of three points without directions both ends say the same; there the only cubic is a parabola.
+For three points without directions both end conditions coincide; the curve is then a parabola.
 """
 
 import math
@@ -31,7 +32,7 @@ from cprbm_scene.statement import Point, Spline
 from fea_reference.hermite import shape_slopes, shapes
 from fea_reference.pieces import pieces_of, places, total
 
-_STEPS = 64  # of a piece, between which the tangent turns by less than half a turn
+_STEPS = 64  # steps per piece, with less than half a turn of the tangent in between
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +86,13 @@ def _cubics(curve: Spline) -> _Cubics:
     A[0, :2], b[0] = _end(curve.start_direction, h[0], h[1], d[0], d[1])
     A[-1, :-3:-1], b[-1] = _end(curve.end_direction, h[-1], h[-2], d[-1], d[-2])
     if n == 3 and curve.start_direction is None and curve.end_direction is None:
-        # of a parabola the slope goes straight over each piece
+        # the slope of a parabola is linear over every piece
         A[-1], b[-1] = (0.0, 1.0, 1.0), 2.0 * d[1]
     return _Cubics(np.concatenate(([0.0], np.cumsum(h))), P, np.asarray(np.linalg.solve(A, b), dtype=np.float64))
 
 
 def _end(direction: Point | None, h0: float, h1: float, d0: Array, d1: Array) -> tuple[tuple[float, float], Array]:
-    """The equation of an end: what stands before m there and next to it, and its right-hand side."""
+    """Equation of an end: coefficients of m at the end and at the next point, and the right-hand side."""
     if direction is not None:
         return (1.0, 0.0), np.array(direction) / math.hypot(*direction)
     both = h0 + h1

@@ -1,18 +1,18 @@
-"""The unknowns, each as a number and the rest that its rounding left: twice the digits where they are needed.
+"""The unknowns as unevaluated sums value + rest, with twice the digits where needed.
 
 ======  =========================================================================
 symbol  meaning
 ======  =========================================================================
 u       unit round-off, half of machine precision
-⊕, ⊗    sum and product as the machine rounds them
+⊕, ⊗    rounded sum and product
 ======  =========================================================================
 
-An element's end force is 12 EI/h³ times the difference of its nodes' places, a contact's pressure ε times the
-difference of two lengths.  Places that are rounded to u leave 12 u EI/h³ and ε u unbalanced, which no Newton step
-can remove.  Kept as value + rest, places are known to u², and their differences to u times themselves.
+An element's end force is 12 EI/h³ times a difference of nodal positions, a contact's pressure ε times a difference of
+lengths. Positions rounded to u leave residuals of 12 u EI/h³ and ε u, beyond the reach of Newton's method. As value +
+rest positions are accurate to u², and their differences to a relative u.
 
-The error of a rounded sum or product is itself a machine number (T. J. Dekker, Numer. Math. 18 (1971) 224;
-D. E. Knuth, The Art of Computer Programming, vol. 2, §4.2.2): a + b = (a ⊕ b) + e and a b = (a ⊗ b) + e exactly.
+The error of a rounded sum or product is a machine number (T. J. Dekker, Numer. Math. 18 (1971) 224; D. E. Knuth, The
+Art of Computer Programming, vol. 2, §4.2.2): a + b = (a ⊕ b) + e and a b = (a ⊗ b) + e exactly.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from cprbm_scene.answer import Array, Ints
 Complex = NDArray[np.complex128]
 Numbers = TypeVar("Numbers", Array, Complex)
 
-_SPLITTER = 2.0**27 + 1.0  # cuts 53 bits into two halves
+_SPLITTER = 2.0**27 + 1.0  # splits 53 bits into two halves
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class State:
-    """The unknowns ``values`` + ``rest``, both (size,); indexed, it gives the values.  Equal to itself only."""
+    """The unknowns ``values`` + ``rest``, (size,) both; indexing gives the values. Equality is identity."""
 
     values: Array
     rest: Array
 
     @classmethod
     def of(cls, values: Array) -> State:
-        """The state whose unknowns are these machine numbers (size,)."""
+        """The state with machine numbers (size,) as unknowns."""
         return cls(values, np.zeros_like(values))
 
     @overload
@@ -57,7 +57,7 @@ class State:
         return State(*summed(self.values, self.rest + step))
 
     def difference(self, end: Ints, start: Ints) -> Array:
-        """What the unknowns ``end`` are more than the unknowns ``start``, with all digits."""
+        """Unknowns ``end`` minus unknowns ``start``, without cancellation."""
         value, error = summed(self.values[end], -self.values[start])
         return np.asarray(value + (error + (self.rest[end] - self.rest[start])))
 
@@ -84,7 +84,7 @@ def squared(a: Array) -> tuple[Array, Array]:
 
 
 def _halves(a: Array) -> tuple[Array, Array]:
-    """Numbers of half the digits whose sum is a."""
+    """High and low half of a, with the exact sum a."""
     wide = _SPLITTER * a
     high = wide - (wide - a)
     return high, a - high

@@ -1,15 +1,15 @@
-"""What a body moves with: the ground, if guides and drives that no stage steps leave it no way to move, or itself.
+"""Frame of a body: the ground, if guides and constant drives prevent any motion, else the body itself.
 
 ======  ===================================================================================
 symbol  meaning
 ======  ===================================================================================
-n, r    a direction that is barred, and the place of it from the body's first point, m
-l       the body's size, the farthest r, so that turning by φ moves what is held by lφ
-C       rows (n, r × n/l) of what is barred, over the body's (u, v, lφ); (0, 0, 1) of its turning
+n, r    a constrained direction, and its place relative to the body's first point, m
+l       the body's size, the largest r, so that a rotation φ moves the constrained points by lφ
+C       rows (n, r × n/l) of constraints, over the body's (u, v, lφ); (0, 0, 1) for its rotation
 ======  ===================================================================================
 
-C x = 0 has x = 0 alone where its rank is three.  What is on such a body cannot move against what is on the ground, and
-a beam that is held on the one lies on the other as if both were one, whichever of two names a scene gives them.
+C x = 0 has only the solution x = 0 if its rank is three. Such a body counts as the ground: a beam held on a
+constrained body may touch fixed bodies as if both were a single body.
 """
 
 from collections.abc import Iterator
@@ -19,14 +19,15 @@ import numpy as np
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import DisplacementDrive, FixedBody, Scene, SlidingBody, TurningBody
 
-_BARRED = 1e-6  # of C's singular values: what bars less lets the body turn by a thousand times what it is held to
+# singular value of C: a smaller one permits a rotation a thousand times the tolerance of the constraints
+_BARRED = 1e-6
 
 
 def frame_of(scene: Scene, body: str) -> str:
-    """What a body moves with: its name, or none if it is of the ground or held as the ground is."""
+    """Name of a body's frame: the body, or an empty string for the ground and for fully constrained bodies."""
     if isinstance(scene.bodies[body], FixedBody):
         return ""
-    barred = tuple(_barred(scene, body))
+    barred = tuple(_constraints(scene, body))
     first = np.array(next(iter(scene.bodies[body].points.values())))
     arms = [np.array(at) - first for at, _ in barred if at is not None]
     size = max((float(np.hypot(*arm)) for arm in arms), default=0.0) or 1.0
@@ -40,8 +41,8 @@ def frame_of(scene: Scene, body: str) -> str:
     return "" if np.linalg.matrix_rank(C, tol=_BARRED) == 3 else body
 
 
-def _barred(scene: Scene, body: str) -> Iterator[tuple[tuple[float, float] | None, Array]]:
-    """Where and in which direction (2,) a body is held; of its turning nowhere, and none."""
+def _constraints(scene: Scene, body: str) -> Iterator[tuple[tuple[float, float] | None, Array]]:
+    """Place and direction (2,) of every constraint on a body; None and zero for a constrained rotation."""
     turning = None, np.zeros(2)
     record = scene.bodies[body]
     if isinstance(record, TurningBody):

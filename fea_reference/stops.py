@@ -1,18 +1,18 @@
-"""Stops: limits of the angle at a pin, each with a moment of its own that holds it.
+"""Stops: limits of the angle at a pin, enforced by a moment.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
-θ, θ⁰   rotation of the section at the pinned end, and as drawn: the tangent angle of the line
+θ, θ⁰   rotation of the section at the pinned end, and in the reference configuration: the line's tangent angle
 φ       rotation of the body
-β⁰      angle as drawn, from the line between the body's two points to the beam, in (−π, π]
+β⁰      reference angle from the line between the body's two points to the beam, in (−π, π]
 β       angle, β⁰ + (θ − θ⁰) − φ
 m       moment of the body on the end, counter-clockwise: m ≥ 0 at the least angle, m ≤ 0 at the most
 ======  =====================================================================================
 
-Where a stop acts its row is β − limit = 0, and its multiplier −m adds −m (θ − φ) to the Lagrangian; where not, the row
-is m = 0.  With shear the neutral line leans from the section by the angle of shear; the moment does its work on the
-section, and it is the section that is limited.
+A closed stop has the row β − limit = 0, and its multiplier −m adds −m (θ − φ) to the Lagrangian; an open stop has the
+row m = 0. With shear the stop limits the section, not the tangent of the neutral line: the moment works on the
+section.
 """
 
 from dataclasses import dataclass
@@ -25,16 +25,16 @@ from fea_reference.acting import Acting
 from fea_reference.hermite import Index
 from fea_reference.state import State
 
-_ROUNDED = 1e-9  # rad: an angle that is π may be drawn a little beyond
+_ROUNDED = 1e-9  # rad: tolerance for a reference angle of π
 
 
 @dataclass(frozen=True, slots=True)
 class StopPart:
-    """A stop: unknown ``theta`` of the end, number of the ``body`` and its unknown ``phi`` if it moves, ``row`` of m.
+    """A stop: unknown ``theta`` of the end, number of the ``body``, its unknown ``phi`` if moving, ``row`` of m.
 
-    ``offset`` is β⁰ − θ⁰; ``point`` names the pin's, ``end`` the beam and which end of it.  ``owner`` names the contact
-    whose edge the end is pinned to, of a stop that is one, see :mod:`fea_reference.own_pins`; ``beyond`` (rad) is how
-    far an angle may be beyond a limit before the stop acts, and brings it there.
+    ``offset`` is β⁰ − θ⁰; ``point`` is the pin's name, ``end`` the beam and which end. ``owner`` names the contact of
+    a stop at a contact edge, see :mod:`fea_reference.own_pins`. ``beyond`` (rad) is the permitted excess of an angle
+    before the stop closes at its limit.
     """
 
     name: str
@@ -52,7 +52,7 @@ class StopPart:
 
     @property
     def known_as(self) -> str:
-        """What it is to the scene: a stop of its own, or a contact."""
+        """Name for the user: of the stop, or of its contact."""
         return self.owner or self.name
 
     def angle(self, z: State) -> float:
@@ -62,19 +62,19 @@ class StopPart:
         return self.offset + turned - body
 
     def moment(self, z: State) -> float:
-        """m, without units."""
+        """m, dimensionless."""
         return -float(z.values[self.row])
 
-    def room(self, z: State) -> tuple[float, float]:
-        """How far the angle is from either limit, negative beyond it, and the nearer of the two limits; rad."""
-        angle, found = self.angle(z), (np.inf, np.nan)
+    def margin(self, z: State) -> tuple[float, float]:
+        """Distance (rad) from the nearest limit, negative beyond, and that limit (rad)."""
+        angle, nearest = self.angle(z), (np.inf, np.nan)
         for limit, sign in ((self.least, 1.0), (self.most, -1.0)):
-            if limit is not None and sign * (angle - limit) + self.beyond < found[0]:
-                found = (sign * (angle - limit) + self.beyond, limit)
-        return found
+            if limit is not None and sign * (angle - limit) + self.beyond < nearest[0]:
+                nearest = (sign * (angle - limit) + self.beyond, limit)
+        return nearest
 
     def press(self, z: State, limit: float) -> float:
-        """With what the stop presses where it holds at a ``limit``; negative where it pulls."""
+        """Moment of a closed stop in the direction of pressing; negative in tension."""
         return self.moment(z) if limit == self.least else -self.moment(z)
 
 
@@ -89,7 +89,7 @@ def stops_of(
         ends: unknown of the rotation and θ⁰ (rad) at the ends of the beams, by beam and end.
         row: of the first stop.
     """
-    found = []
+    stops = []
     for i, (name, stop) in enumerate(scene.stops.items()):
         beam = scene.beams[stop.beam]
         end = beam.start if stop.end == "start" else beam.end
@@ -102,12 +102,12 @@ def stops_of(
         number, dofs = bodies[scene.body_of(end.point)]
         phi = None if dofs is None else int(dofs[2])
         ends_of = (stop.beam, stop.end)
-        found.append(
+        stops.append(
             StopPart(name, end.point, number, theta, phi, row + i, angle - drawn, stop.least, stop.most, ends_of)
         )
-    return tuple(found)
+    return tuple(stops)
 
 
 def acting_stops(stops: tuple[StopPart, ...], acting: Acting) -> tuple[tuple[StopPart, float], ...]:
-    """The stops that hold, each with its limit."""
+    """The closed stops with their limits."""
     return tuple((stop, acting.limits[stop.name]) for stop in stops if stop.name in acting.limits)

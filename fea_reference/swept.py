@@ -1,16 +1,16 @@
-"""Which points a beam goes over on its way: tips that are too sharp for its samples, centres of small circles.
+"""Points that a beam sweeps over: tips too sharp for its samples, centres of small circles.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 c       the point, in either of two states
-x, n    the place of the neutral line that is closest to it, and the line's normal there, to the left
+x, n    the closest place of the neutral line, and the line's normal there, to the left
 d       n·(x − c)
 ======  =====================================================================================
 
-Where a closest place is found in both states, the one beginning from the other, a beam that has gone over the point has
-it on its other side: d has changed its sign.  That is exact however narrow what stands there is.  One that has gone
-round an end has none on its way, if that was short enough; one of which another part is closer has gone farther.
+Both states have a closest place, the second found from the first. If the beam swept over the point, d changes sign.
+This test is exact for any small obstacle. A beam that went around the point with its end has no closest place in a
+short step; a beam with a closer part elsewhere moved farther than a step.
 """
 
 from dataclasses import dataclass
@@ -23,46 +23,48 @@ from fea_reference.neighbours import nearest
 from fea_reference.projection import closest
 from fea_reference.state import Complex
 
-_WAY = 1.5  # times the way of either place: what is passed has come no farther than that across
-_PLACES = 4  # per element, from which the closest one is sought
+_WAY = 1.5  # times the motion of either place: largest change of d for a sweep
+_PLACES = 4  # per element: samples for the initial guess of the closest place
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
-    """Of k points: ζ (k,) of the closest place and whether it was ``found``, d (k,) and n (k,) as complex numbers."""
+class ClosestPlaces:
+    """Closest places of k points: ζ (k,), ``found`` (k,), d (k,) and n (k,) as complex numbers."""
 
     zeta: Array
     found: Flags
     d: Array
     n: Complex
 
-    def along(self, out: Complex) -> Complex:
-        """Of n and −n that which goes with ``out`` (k,): a beam on a tip has its normal between those of the sides."""
+    def normal_along(self, out: Complex) -> Complex:
+        """±n in the direction of ``out`` (k,): the normal of a beam on a tip lies between those of the tip's sides."""
         return np.asarray(self.n * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 
-    def seen_along(self, out: Complex) -> Array:
-        """d (k,) by that."""
+    def distance_along(self, out: Complex) -> Array:
+        """±d (k,) with the same sign."""
         return np.asarray(self.d * np.where((self.n.conj() * out).real < 0.0, -1.0, 1.0))
 
 
-def beside(line: NeutralLine, points: Complex, guess: Array | None = None) -> Beside:
-    """On which side of a line points x + i y (k,) are; sought from a ``guess`` (k,), else from what is nearest."""
+def closest_places(line: NeutralLine, points: Complex, guess: Array | None = None) -> ClosestPlaces:
+    """Closest places of a line to points x + i y (k,), from ``guess`` (k,) or from the nearest sample."""
     if guess is None:
         even = np.arange(_PLACES * line.n + 1) / _PLACES
         there = line.around(even)
         guess = even[nearest(points, line.nodes[there.element] + there.way)[1]]
     zeta, found, there = closest(line, points, guess)
     n = 1j * there.ahead / np.abs(there.ahead)
-    return Beside(zeta, found, (n.conj() * (line.nodes[there.element] + there.way - points)).real, n)
+    return ClosestPlaces(zeta, found, (n.conj() * (line.nodes[there.element] + there.way - points)).real, n)
 
 
-def gone_over(before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex]) -> tuple[Beside, Beside, Flags]:
-    """Where points (k,) are beside a line in two states, and which of them it may have gone over between, (k,)."""
+def swept_over(
+    before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex]
+) -> tuple[ClosestPlaces, ClosestPlaces, Flags]:
+    """Closest places of points (k,) in two states, and True (k,) for points that may have been swept over."""
     (old, c_0), (new, c_1) = before, after
-    first = beside(old, c_0)
-    last = beside(new, c_1, first.zeta)
-    ways = [np.abs(_at(new, one.zeta) - c_1 - _at(old, one.zeta) + c_0) for one in (first, last)]
-    near = np.abs(last.d - first.d) <= _WAY * np.maximum(*ways)
+    first = closest_places(old, c_0)
+    last = closest_places(new, c_1, first.zeta)
+    paths = [np.abs(_at(new, places.zeta) - c_1 - _at(old, places.zeta) + c_0) for places in (first, last)]
+    near = np.abs(last.d - first.d) <= _WAY * np.maximum(*paths)
     return first, last, first.found & last.found & near
 
 

@@ -1,7 +1,7 @@
-"""The whole mechanism's unbalanced forces and their tangent: elements, joints, drives, stops, loads, contacts summed.
+"""Residual and tangent of the whole mechanism: elements, joints, drives, stops, loads and contacts.
 
-The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers
-included, and the tangent its second derivative: symmetric and indefinite.
+The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, multipliers included. The
+tangent is the second derivative, symmetric and indefinite.
 """
 
 from collections.abc import Mapping
@@ -26,27 +26,26 @@ from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 
 NOTHING = 10.0
-"""Floors: forces below this are round-off themselves."""
+"""Floors: smaller forces are round-off."""
 
-_ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
+_ROUND_OFF = 3.0  # measured: up to two for 20 to 1280 elements, in both parts of the floor
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
 @dataclass(frozen=True)
 class System:
-    """A state ``z`` and what follows from it.
+    """Residual and tangent in a state ``z``.
 
     Attributes:
-        loads: those on beams that have a value.
-        residual: unbalanced generalised forces and violations of rows, (size,).
-        tangent: its derivative, sparse (size, size).
-        scale: the largest generalised force that balances; where there is none but round-off, EI/length².
-        floor: round-off of the residual.  An element's end force is 12 EI/h² times the angle between its
-            tangents and its chord; the chord's own angle is rounded, and so the force is to 12 EI/h² times the
-            spacing of machine numbers there.  A penalty ε adds ε times an element's share of the zone,
-            times what the gap is rounded to.
-        told: whether what balances is more than round-off.
+        loads: loads on beams with a nonzero value.
+        residual: unbalanced generalised forces and constraint violations, (size,).
+        tangent: derivative of the residual, sparse (size, size).
+        scale: the largest generalised force in equilibrium; EI/length² if all forces are round-off.
+        floor: round-off of the residual. An element's end force is 12 EI/h² times the angle between tangent and
+            chord, so that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A
+            penalty ε adds ε times an element's share of the zone times the round-off of the gap.
+        significant: True if the forces in equilibrium exceed round-off.
     """
 
     z: State
@@ -58,10 +57,10 @@ class System:
     loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
-    told: bool
+    significant: bool
 
     def solve(self, right: Array) -> Array | None:
-        """What the tangent makes ``right`` (size,) of; None where it is exactly singular or as good as that."""
+        """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
         solution = None if self._factors is None else self._factors.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
 
@@ -74,26 +73,28 @@ class System:
 
 
 def factors(matrix: csc_matrix) -> SuperLU:
-    """Factors of a matrix (m, m), its columns one by one: those of beams are too few alike to be taken together.
+    """LU factors of a matrix (m, m), without supernodes: beam matrices have too few similar columns.
 
     Raises:
-        RuntimeError: it is exactly singular.
+        RuntimeError: the matrix is exactly singular.
     """
     return splu(matrix, relax=1, panel_size=1)
 
 
 @dataclass(frozen=True, slots=True)
 class Drag:
-    """Springs of stiffness ``weights`` (size,) from every motion to where it was in the state ``anchor``."""
+    """Springs of stiffness ``weights`` (size,) on all motions, relaxed in the state ``anchor``."""
 
     anchor: State
     weights: Array
 
 
-def stiffened(model: Model, system: System, one: Touch, factor: float) -> System:
-    """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
-    more = replace(one, stiffness=factor * one.stiffness).hessian(one.pushes) - one.hessian(one.pushes)
-    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(one.dofs, more)]))
+def with_stiffness_factor(model: Model, system: System, contact: Touch, factor: float) -> System:
+    """The system with a contact ``factor`` times as stiff at unchanged force; only the tangent changes."""
+    change = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
+        contact.pushes
+    )
+    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(contact.dofs, change)]))
 
 
 def assemble(
@@ -103,64 +104,67 @@ def assemble(
     values: Array,
     z: State,
     acting: Acting,
-    held: Mapping[Contact, float] = _NONE_HELD,
-    foreseen: Mapping[Contact, Array] = _NOTHING_FORESEEN,
+    held_depths: Mapping[Contact, float] = _NONE_HELD,
+    predicted: Mapping[Contact, Array] = _NOTHING_FORESEEN,
     drag: Drag | None = None,
 ) -> System:
-    """Sum everything up in state ``z``.
+    """Residual and tangent in state ``z``.
 
     Args:
         model: the mechanism.
-        penalties: the contacts that are watched, with what presses them apart.
+        penalties: penalty of every closed contact.
         quadrature: Gauss points per interval of a contact zone.
-        values: of all that is stepped, in the model's order, without units.
+        values: dimensionless values of all stepped parameters, in the model's order.
         z: the unknowns.
-        acting: the rows that act of those that come and go.
-        held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
-        foreseen: what the points of contacts (k,) were foreseen to push with; the tangent takes it for what they do
-            push with, see :mod:`fea_reference.newton`.
-        drag: what resists motions besides.
-    """
-    touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
-    rounded = sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
-    return _summed(model, touches, rounded, values, z, acting, foreseen, drag)
-
-
-def pushed(model: Model, system: System, values: Array, z: State, pushes: Mapping[Contact, Array]) -> System:
-    """A system's contacts with ``pushes`` (k,) that are given, in a state ``z`` so near that they see no difference.
-
-    What their gaps are rounded to is in none of the forces then.
+        acting: the active constraints.
+        held_depths: depths of contacts forced active, see :func:`~fea_reference.contact.touch`.
+        predicted: predicted point forces (k,) of contacts, used in the tangent, see :mod:`fea_reference.newton`.
+        drag: additional springs.
     """
     touches = tuple(
-        replace(one, gap=-pushes[one.pair] / np.where(one.stiffness > 0.0, one.stiffness, 1.0)) if one.closed else one
-        for one in system.touches
+        touch(model, pair, penalty, quadrature, z, held_depths.get(pair)) for pair, penalty in penalties.items()
     )
-    return _summed(model, touches, 0.0, values, z, system.acting, _NOTHING_FORESEEN, None)
+    rounded = sum(_ROUND_OFF * _round_off(model, contact, penalties[contact.pair].stiffness) for contact in touches)
+    return _assembled(model, touches, rounded, values, z, acting, predicted, drag)
 
 
-def _summed(
+def with_point_forces(model: Model, system: System, values: Array, z: State, pushes: Mapping[Contact, Array]) -> System:
+    """The system with given contact point forces ``pushes`` (k,), in a state ``z`` with nearly the same contacts.
+
+    The forces then are free of the round-off of gaps.
+    """
+    touches = tuple(
+        replace(contact, gap=-pushes[contact.pair] / np.where(contact.stiffness > 0.0, contact.stiffness, 1.0))
+        if contact.closed
+        else contact
+        for contact in system.touches
+    )
+    return _assembled(model, touches, 0.0, values, z, system.acting, _NOTHING_FORESEEN, None)
+
+
+def _assembled(
     model: Model,
     touches: tuple[Touch, ...],
     rounded: float,
     values: Array,
     z: State,
     acting: Acting,
-    foreseen: Mapping[Contact, Array],
+    predicted: Mapping[Contact, Array],
     drag: Drag | None,
 ) -> System:
-    """The sum of what contacts do, whose forces are ``rounded`` to so much, and of all else."""
+    """The system with contacts of a given round-off."""
     elements = model.bend(z)
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
     entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
-    pressing = [(one, one.gradient) for one in touches if one.closed]
-    for one, gradient in pressing:
-        parts.append((one.dofs, gradient))
-        entries.append(Block(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair)))))
+    pressing = [(contact, contact.gradient) for contact in touches if contact.closed]
+    for contact, gradient in pressing:
+        parts.append((contact.dofs, gradient))
+        entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
-        if isinstance(part, OnBeam) and value != 0.0  # those of later stages do not act yet
+        if isinstance(part, OnBeam) and value != 0.0  # loads of later stages do not act yet
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))
@@ -169,38 +173,40 @@ def _summed(
         residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
-        every = np.arange(model.size)
-        entries.append(Single(every, every, drag.weights))
+        unknowns = np.arange(model.size)
+        entries.append(Single(unknowns, unknowns, drag.weights))
     tangent = model.patterns.matrix(entries)
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
-    balanced += [abs(values[model.stepped.index(MOMENTS)] * one.moment) for one in model.apart]
+    balanced += [abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart]
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
     floor += rounded
-    told = largest > NOTHING * floor
-    return System(z, acting, residual, tangent, elements, touches, loads, largest if told else 1.0, floor, told)
+    significant = largest > NOTHING * floor
+    return System(
+        z, acting, residual, tangent, elements, touches, loads, largest if significant else 1.0, floor, significant
+    )
 
 
-def _pushes(one: Touch, foreseen: Array | None) -> Array:
-    """What a contact's points push with for the tangent, (k,): as foreseen.
+def _pushes(contact: Touch, predicted: Array | None) -> Array:
+    """Predicted point forces (k,) of a contact for the tangent.
 
-    Where the points are others by now, it is less than they do if their sum was foreseen to be less.
+    If the points have changed, the current forces are scaled down to the predicted sum.
     """
-    if foreseen is None:
-        return one.pushes
-    if foreseen.size == one.pushes.size:
-        return foreseen
-    share = float(foreseen.sum()) / one.push if one.push != 0.0 else 0.0
-    return min(1.0, max(-1.0, share)) * one.pushes
+    if predicted is None:
+        return contact.pushes
+    if predicted.size == contact.pushes.size:
+        return predicted
+    share = float(predicted.sum()) / contact.push if contact.push != 0.0 else 0.0
+    return min(1.0, max(-1.0, share)) * contact.pushes
 
 
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
-    """Of a contact's force on a node: ε times what lies in an element of the zone, times what the gap is rounded to.
+    """Round-off of a contact's nodal force: ε times the zone's length in an element times the round-off of the gap.
 
-    Within an element that is a share of the element's length, across a pair and to an edge also of the distance at
-    which they touch; where what is rigid moves with its body, or is the graph of a function, of the longest beam.
+    The gap is rounded relative to the element's length, for a pair or an edge also to the distance in contact. On a
+    moving body or on the graph of a function the round-off is relative to the longest beam.
     """
     pair = touch.pair
     h = float(model.elements.length[model.beams[pair.first].elements.start])
@@ -217,20 +223,20 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
 
 
 def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
-    """What one load, drive or share of unit value adds to the right-hand side, (size,).
+    """Right-hand side (size,) of a unit load, drive or share.
 
-    Of a load or moments their generalised forces, of a drive one in its row, of a way what it is less in its rows.
+    A load or moment gives its generalised forces, a drive a unit in its row, a way the shortening in its rows.
     """
     part = model.stepped[load]
     f = np.zeros(model.size)
     if isinstance(part, OnBeam):
         return load_forces(model, part, z)
     if isinstance(part, SharePart):
-        for i, one in enumerate(model.apart):
+        for i, end in enumerate(model.apart):
             if part is MOMENTS:
-                f[one.joint.dofs[2]] = one.moment
+                f[end.joint.dofs[2]] = end.moment
             elif acting.ways is not None:
-                f[one.joint.rows] = -acting.ways[i]
+                f[end.joint.rows] = -acting.ways[i]
         return f
     body = model.bodies[part.body]
     if isinstance(part, DrivePart):
@@ -247,13 +253,13 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
 
 
 def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Single]:
-    """Joints, hinges, guides, drives, stops and loads: few, so one after the other."""
+    """Residual and tangent of joints, hinges, guides, drives, stops and loads on bodies, assembled one at a time."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}
     if acting.ways is not None:
         share = values[model.stepped.index(WAY)] if model.apart else 1.0
-        for one, way in zip(model.apart, acting.ways, strict=True):
-            ways[int(one.joint.rows[0])] = (1.0 - share) * way
+        for end, way in zip(model.apart, acting.ways, strict=True):
+            ways[int(end.joint.rows[0])] = (1.0 - share) * way
     rows: list[int] = []
     columns: list[int] = []
     entries: list[float] = []

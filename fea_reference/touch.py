@@ -1,4 +1,4 @@
-"""What may touch, and what a contact is in one state: records that the kinds of contact share."""
+"""Records of contacts: what may touch, its penalty, and the evaluated contact in a state."""
 
 from __future__ import annotations
 
@@ -17,38 +17,38 @@ from fea_reference.outline import Outline
 from fea_reference.zones import Zones
 
 THINNEST = 1e-3
-"""Of the longest beam: the least thickness by which a penetration of something rigid is measured.  It goes with the
-elements, not with the thickness, and what touches as a line is measured by far more.
+"""Lengths of the longest beam: least thickness for the relative penetration on a rigid body. The penetration depends
+on the elements rather than on the thickness, and lines have a far larger measure.
 """
 
 
 SHALLOW = 0.05
-"""Of a circle's radius: an overlap that a penalty may leave."""
+"""Radii of a circle: greatest penetration under a penalty."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two beams that may touch, or one and itself.
+    """Two beams that may touch, or a beam in self-contact.
 
     Attributes:
-        first, second: their numbers; the first carries the integral.
-        turned: whether the first is the scene's second.
-        side: of the second on which the first lies; of a beam and itself its ``roles`` tell.
-        side_m: of the first on which the second lies.
-        distance: T, of the neutral lines when they touch where the beams are thickest.
-        ends, ends_m: which ends of the first and of the second (0 and 1) may come to lie on the other's side: not those
-            that a body holds beside it.
-        carried: ends of the second beam whose zones the second carries the integral of, as ends of the first press too.
-        free, free_m: first and last place ζ of the first and of the second between which the beams may touch: beside an
-            end that both share they overlap as drawn.
-        tapers: how the thickness varies, of beams that touch by their edges if it does.
-        scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
-            lines, which have none.
-        measure: what penetration is reported by: the same, but the longest beam for lines.
-        loosest, stiffness, stiffest: the penalty with which to look for a zone that is far from where it was, to
-            begin with, and to end with if the penetration asks for no more: each the softer beam's EI over the
-            fourth power of a layer's width.  The widest is a share of the beam's length, so that finer elements make
-            the search no harder, the thinnest a finer element's length, so that what it spoils vanishes with it.
+        first, second: numbers of the beams; the contact integral runs along the first.
+        turned: True if the first is the scene's second.
+        side: side of the second beam on which the first lies; for self-contact see ``roles``.
+        side_m: side of the first beam on which the second lies.
+        distance: T, distance of the neutral lines in contact where the beams are thickest.
+        ends, ends_m: ends (0 and 1) of the first and second beam that may touch the other's side. Ends that a body
+            holds beside the other beam are excluded.
+        carried: ends of the second beam whose zones are integrated along the second, if ends of the first press, too.
+        free, free_m: range of places ζ of the first and second beam with contact; near a shared end the beams overlap
+            in the reference configuration.
+        tapers: thickness variation; None for constant thickness.
+        scale: reference length of the requested penetration: the mean thickness, or a hundredth of the longest beam
+            for lines.
+        measure: reference length of the reported penetration: the same, but the longest beam for lines.
+        loosest, stiffness, stiffest: penalties to search for a distant zone, to start with, and to end with if the
+            penetration allows. All are the softer beam's EI over the fourth power of a layer's width. The widest
+            layer is a share of the beam's length, so that the search does not depend on the mesh. The thinnest is the
+            length of a finer element, so that its error vanishes on refinement.
     """
 
     name: str
@@ -72,11 +72,11 @@ class Pair:
     tapers: Tapers | None = None
 
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
-        """The side at places ``zeta`` (k,) and ``zeta_m`` (k,), where n·(x − x_m) is ``d`` (k,)."""
+        """Sides (k,) at places ``zeta`` (k,) and ``zeta_m`` (k,), with ``d`` (k,) = n·(x − x_m)."""
         return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
 
-    def faced(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
-        """What places ``zeta`` (k,) of the first beam face on the second, sought from ``guess`` (k,)."""
+    def places_facing(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
+        """Places of the second beam facing ``zeta`` (k,) of the first, with initial guesses ``guess`` (k,)."""
         there = first.around(zeta)
         points = first.nodes[there.element] + there.way
         return facing(
@@ -84,12 +84,12 @@ class Pair:
         )
 
     def apart(self, zeta: Array, zeta_m: Array) -> Array:
-        """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
+        """Distance (k,) of the neutral lines in contact at places ``zeta`` and ``zeta_m`` (k,)."""
         thinner = np.zeros(zeta.shape) if self.tapers is None else self.tapers.thinner(zeta, zeta_m)
         return np.asarray(self.distance - thinner)
 
-    def about(self) -> Pair:
-        """Two beams that have changed places."""
+    def exchanged(self) -> Pair:
+        """The pair with exchanged beams."""
         return replace(
             self,
             first=self.second,
@@ -107,12 +107,12 @@ class Pair:
 
     @property
     def ended(self) -> bool:
-        """Whether places beyond an end of the second beam see that: those of the same one, but for a line's."""
+        """True if places beyond an end of the second beam face this end: self-contact of a thick beam."""
         return self.roles is not None and self.roles.ended
 
     @property
     def edge_m(self) -> Edge | None:
-        """How the second beam's thickness varies, if it does."""
+        """Thickness variation of the second beam, or None."""
         return None if self.tapers is None else self.tapers.second
 
 
@@ -122,15 +122,15 @@ class Circle:
 
     Attributes:
         first: number of the beam.
-        body: number of the body that the circle is fixed to, at ``arm`` from its reference centre.
+        body: number of the circle's body; the centre is at ``arm`` from the body's reference centre.
         radius: of the circle.
-        edge: T, distance of the neutral line from the circle where they touch.
-        scale: what penetration is measured by: the least thickness, or the longest beam for a line.
-        loosest: the penalty to begin with, EI over the fourth power of the width of the layer in which the
-            pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
-            that finer elements make the search for the zone no harder.
-        stiffest: the penalty to end with, whatever the penetration: its layer is a fixed share of an
-            element, so that what it spoils vanishes evenly with the element.
+        edge: T, distance of the neutral line from the circle in contact.
+        scale: reference length of the penetration: the least thickness, or the longest beam for a line.
+        loosest: initial penalty, EI over the fourth power of the width of the layer in which the pressure builds up
+            at a zone's end. The width is a share of the beam's length, or the radius if smaller, so that the search
+            does not depend on the mesh.
+        stiffest: final penalty, whatever the penetration. Its layer is a fixed share of an element, so that its error
+            vanishes smoothly on refinement.
     """
 
     name: str
@@ -145,17 +145,17 @@ class Circle:
 
     @property
     def stiffness(self) -> float:
-        """The penalty to begin with."""
+        """The initial penalty."""
         return self.loosest
 
     @property
     def deepest(self) -> float:
-        """What the overlap of a penalty may be; deeper is on its way through."""
+        """Greatest penetration under a penalty; a deeper circle is being passed through."""
         return SHALLOW * self.radius + 0.5 * self.edge.nearest
 
     @property
     def measure(self) -> float:
-        """What penetration is reported by: the same, if it is not very thin."""
+        """Reference length of the reported penetration."""
         return max(self.scale, THINNEST)
 
 
@@ -165,13 +165,14 @@ class Face:
 
     Attributes:
         first: number of the beam.
-        body: number of the body that the edge is fixed to.
+        body: number of the edge's body.
         outline: the edge, in a frame about the body's reference centre.
         own: ends ζ of the beam that joints hold on the edge.
-        within: from which place ζ to which the edge presses; with shear the joint does beside such an end.
-        edge: T, distance of the neutral line from the edge where they touch.
-        scale, measure: as of a pair.
-        loosest, stiffest: as of a circle.
+        within: range of places ζ with pressure of the edge; with shear the joint transmits the pressure beside its
+            end.
+        edge: T, distance of the neutral line from the edge in contact.
+        scale, measure: as for a pair.
+        loosest, stiffest: as for a circle.
     """
 
     name: str
@@ -188,12 +189,12 @@ class Face:
 
     @property
     def stiffness(self) -> float:
-        """The penalty to begin with."""
+        """The initial penalty."""
         return self.loosest
 
 
 LACKING = 1e-3
-"""Of what a zone presses with: more may not be left out at its end."""
+"""Share of a zone's force: largest missing force at the zone's end."""
 
 Rigid = Circle | Face
 Contact = Pair | Rigid
@@ -201,12 +202,11 @@ Contact = Pair | Rigid
 
 @dataclass(frozen=True, slots=True)
 class Penalty:
-    """What presses a contact apart: the line pressure is ``stiffness`` ⟨``lead`` − g⟩.
+    """Penalty of a contact: the line pressure is ``stiffness`` ⟨``lead`` − g⟩.
 
     Attributes:
         stiffness: ε.
-        lead: the gap at which the pressure begins.  It lets a pressure that is known beforehand act where the
-            gap is zero, as it does beside a clamp.
+        lead: the gap at which the pressure begins; a known pressure acts at zero gap, as beside a clamp.
     """
 
     stiffness: float
@@ -215,24 +215,26 @@ class Penalty:
 
 @dataclass(frozen=True, slots=True)
 class Touch:
-    """A contact at its k Gauss points.
+    """A contact in a state, evaluated at its k Gauss points.
 
-    ``stiffness`` (k,) is the penalty's times the length that a point stands for, ``gap`` (k,) that to where the
-    pressure begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by what the lines go by: that of
-    the first beam, then that of the second's or the unknowns of the body of what is rigid, if it moves.  ``chain``
-    leads on to all unknowns, for every ``alike`` points that lie in the same elements: at c = k/alike places.
-    Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for what is rigid), points ``x`` of the
-    first beam's neutral line and ``x_m`` of the second's or of the rigid edge (2, k), the ``normal`` (2, k) away
-    from what it touches.
-    ``missing`` is the force that ends of the second beam leave out, and what it is of its zone's own push at most, what
-    it ``lacks``; ``bent`` (m, m, k) what else the energy's second derivatives have, at some of the points.  Where a
-    contact is ``sharp``, something with an edge of its own presses.
+    ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
+    (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the unknowns of the first line, then of the
+    second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as
+    ``points_per_place`` consecutive points lie in the same elements.
+
+    ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.
+    ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge. ``normal`` (2, k)
+    points to the first beam.
+
+    ``missing`` is the force left out at ends of the second beam, and ``missing_share`` its largest share of a zone's
+    force. ``extra_hessian`` (m, m, k) are further second derivatives of the energy at some points. ``sharp`` is True
+    for a contact at a tip or end.
     """
 
     pair: Contact
     zones: Zones
     chain: Chain
-    alike: int
+    points_per_place: int
     stiffness: Array
     gap: Array
     gap_by: Array
@@ -243,77 +245,77 @@ class Touch:
     x_m: Array
     normal: Array
     missing: float = 0.0
-    lacks: float = 0.0
-    bent: Array | None = None
+    missing_share: float = 0.0
+    extra_hessian: Array | None = None
     sharp: bool = False
 
     @property
     def pushes(self) -> Array:
-        """What each point pushes the first beam away with, (k,)."""
+        """Contact forces (k,) of the points on the first beam, along the normal."""
         return -self.stiffness * self.gap
 
     @property
     def force(self) -> Array:
-        """On the first beam, (2, k)."""
+        """Contact forces (2, k) on the first beam."""
         return self.pushes * self.normal
 
     @property
     def dofs(self) -> Index:
-        """Unknowns (M, c) on which the contact's energy depends."""
+        """Unknowns (M, c) of the contact's energy."""
         return self.chain.dofs
 
     @property
     def gradient(self) -> Array:
-        """Of the penalty's energy by the unknowns, (M, c)."""
+        """Derivative (M, c) of the contact energy by the unknowns."""
         return self.chain.gradient(self._summed(-self.pushes * self.gap_by))
 
     @property
     def mean(self) -> Array:
-        """Of the points' gaps by their stiffness, by the unknowns, (M, c)."""
+        """Derivative (M, c) of the stiffness-weighted mean gap by the unknowns."""
         return self.chain.gradient(self._summed(self.stiffness / self.stiffness.sum() * self.gap_by))
 
     def hessian(self, pushes: Array) -> Array:
-        """Of the penalty's energy by the unknowns, (M, M, c), if the points push with ``pushes`` (k,)."""
+        """Second derivative (M, M, c) of the contact energy by the unknowns, for point forces ``pushes`` (k,)."""
         local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
-        if self.bent is not None:
-            local += self.bent
+        if self.extra_hessian is not None:
+            local += self.extra_hessian
         return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
 
-    def foreseen(self, step: Array) -> Array:
-        """What the points will push with after a ``step`` (size,) of the unknowns, to first order, (k,)."""
-        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.alike, axis=1)
+    def predicted_forces(self, step: Array) -> Array:
+        """Point forces (k,) after a ``step`` (size,) of the unknowns, to first order."""
+        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.points_per_place, axis=1)
         return np.asarray(self.pushes - self.stiffness * (self.gap_by * local).sum(axis=0))
 
     def _summed(self, at_points: Array) -> Array:
-        return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.alike).sum(axis=-1))
+        return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.points_per_place).sum(axis=-1))
 
     @property
     def penetration(self) -> float:
-        """Largest depth of overlap."""
+        """Largest penetration."""
         return max(0.0, -self.zones.least)
 
     @property
     def push(self) -> float:
-        """The resultant with its sign: negative while a held contact pulls."""
+        """Resultant of the point forces with sign, negative for a held contact in tension."""
         return float(self.pushes.sum())
 
     @property
     def closed(self) -> bool:
-        """Whether the beams touch anywhere."""
+        """True if there is any zone."""
         return self.zeta.size > 0
 
 
 @cache
 def gauss(points: int) -> tuple[Array, Array]:
-    """Places in [−1, 1] and weights of Gauss' rule, (points,) each."""
+    """Gauss points in [−1, 1] and weights, (points,) both."""
     places, weights = np.polynomial.legendre.leggauss(points)
     return frozen_array(places), frozen_array(weights)
 
 
-def together(quadrature: int, *elements: Index) -> int:
-    """How many points that follow each other are in the same ``elements`` (k,) each: those of an interval, or one.
+def count_points_per_place(quadrature: int, *elements: Index) -> int:
+    """Number of consecutive points in the same ``elements`` (k,): those of an interval, or a single point.
 
-    An interval lies within one element, but for what its ends are rounded to.
+    An interval lies within an element up to round-off of its ends.
     """
     same = all((e.reshape(-1, quadrature) == e[::quadrature, None]).all() for e in elements)
     return quadrature if same else 1

@@ -1,18 +1,18 @@
-"""What it changes elsewhere that contacts in a point sink in.
+"""Effect of the penetration of point contacts on other forces and motions.
 
 ======  =====================================================================================
 symbol  meaning
 ======  =====================================================================================
 K, z    tangent and unknowns of an equilibrium
-ε, F    penalty and push of a contact;  c = ∂g, the mean of its points by their stiffness
-d       its depth, which goes with ε to the power −1/m while its push stays
+ε, F    penalty and force of a contact;  c = ∂g, stiffness-weighted mean of its points
+d       penetration, proportional to ε to the power −1/m at a constant force
 ======  =====================================================================================
 
-With ε the equilibrium goes by K dz/d ln ε = F c, as the push is F if nothing moves.  All that is left until the penalty
-is without end, where the contact is not deep at all, is m times that: the depth goes by −d/m, and what follows from it
-goes evenly with the depth.  Where what may move is little, depths that are nothing beside the thickness are much
-beside that motion, and pushes of contacts near each other say so first.  What is open and is pushed into by that has a
-push to be foreseen, too: its overlap over the compliance cᵀ K⁻¹ c.
+For a change of ε the equilibrium changes by K dz/d ln ε = F c, since without motion the force is F. The total change
+up to an infinite penalty, with zero penetration, is m times this rate: the penetration changes by −d/m, and its
+effects are linear in the penetration. In a nearly rigid mechanism a penetration small against the thickness may be
+large against the motion; the forces of neighbouring contacts are the first to show this. An open contact that would
+overlap gets a predicted force, its overlap over the compliance cᵀ K⁻¹ c.
 """
 
 from collections.abc import Iterable, Mapping
@@ -25,120 +25,127 @@ from fea_reference.model import Model
 from fea_reference.system import System
 from fea_reference.touch import Contact, Face, Penalty, Touch
 
-FELT = 0.01
-"""Of pushes and of the motion: by how much what sinks in may change them."""
+SIGNIFICANT = 0.01
+"""Relative change of forces and motions by a penetration that is significant."""
 
-ROUNDED = 2e-12
-"""Of the longest beam: less deep, what places are rounded to is felt."""
+ROUND_OFF_DEPTH = 2e-12
+"""Lengths of the longest beam: smaller penetrations are affected by round-off of positions."""
 
 POINT = 1.0
-"""Elements: a zone no wider is a point."""
+"""Elements: largest width of a point contact's zone."""
 
 _FALLS = (1.5, 2.0)  # m between sides, and at a tip
-_FAINT = 0.1  # of the largest push: a smaller one is measured by that
-_STILL = 1e-4  # of what the largest push does to a beam at its length: motions below are measured by that
-_BESIDE = 1e-6  # of the measure: how near a place is to the least gap that stands for it
-_NEAR = 0.1  # lengths of the longest beam: what is farther nothing sinks into by loose penalties
+_FAINT = 0.1  # times the largest force: reference for smaller forces
+_STILL = 1e-4  # times the deflection of a beam by the largest force at its length: reference for smaller motions
+_BESIDE = 1e-6  # times the measure: range above the least gap for the contact's representative places
+_NEAR = 0.1  # lengths of the longest beam: larger gaps do not close under loose penalties
 
 
-def in_points(one: Touch) -> bool:
-    """Whether a contact presses in points only: in zones that are no wider than an element each.
+def is_point_contact(contact: Touch) -> bool:
+    """True if a contact presses in points only, in zones no wider than an element.
 
-    What presses beside a joint that lies on it has no point: its push grows without end towards the joint.
+    A contact beside a joint on its surface does not count: its force grows without bound towards the joint.
     """
-    if not one.closed or _beside_joint(one):
+    if not contact.closed or _beside_joint(contact):
         return False
-    first, last = one.zones.intervals.T
-    begins = one.zones.begins
+    first, last = contact.zones.intervals.T
+    begins = contact.zones.begins
     return bool((last[np.append(begins[1:], True)] - first[begins]).max() < POINT)
 
 
-def _beside_joint(one: Touch) -> bool:
-    """Whether something rigid presses within an element of a joint that lies on it, and nowhere else."""
-    return isinstance(one.pair, Face) and any(np.abs(one.zeta - end).max() < POINT for end in one.pair.own)
+def _beside_joint(contact: Touch) -> bool:
+    """True if an edge presses only within an element of a joint on the edge."""
+    return isinstance(contact.pair, Face) and any(np.abs(contact.zeta - end).max() < POINT for end in contact.pair.own)
 
 
-def felt(
+def penetration_effects(
     model: Model, system: System, penalties: Mapping[Contact, Penalty], waiting: Iterable[Contact], quadrature: int
 ) -> dict[Contact, float]:
-    """By how much what each contact in points sinks in is felt, as a share of pushes and of the motion.
+    """Relative effect of every point contact's penetration on forces and motions, by contact.
 
-    Of an equilibrium; ``waiting`` are the contacts that are open in it, whose pushes are foreseen.
+    ``waiting`` are the open contacts, whose forces are predicted.
     """
-    sinking = [one for one in system.touches if one.push > 0.0 and one.penetration > ROUNDED and in_points(one)]
+    sinking = [
+        contact
+        for contact in system.touches
+        if contact.push > 0.0 and contact.penetration > ROUND_OFF_DEPTH and is_point_contact(contact)
+    ]
     if not sinking:
         return {}
-    pressing = [one for one in system.touches if one.closed]
-    largest = max(one.push for one in pressing)
+    pressing = [contact for contact in system.touches if contact.closed]
+    largest = max(contact.push for contact in pressing)
     places = model.node_dofs[:2]
     motion = float(np.abs((system.z.values - model.start.values)[places]).max())
     motion = max(motion, _STILL * largest / min(beam.softest for beam in model.beams))
     beside = [
-        *_beside(model, system, (one.pair for one in system.touches if not one.closed), penalties, quadrature),
-        *_beside(model, system, waiting, penalties, quadrature),
+        *_open_contacts(
+            model, system, (contact.pair for contact in system.touches if not contact.closed), penalties, quadrature
+        ),
+        *_open_contacts(model, system, waiting, penalties, quadrature),
     ]
-    told = _told(pressing)
-    found = {}
-    for one in sinking:
+    groups = _determinate_groups(pressing)
+    effects = {}
+    for contact in sinking:
         right = np.zeros(model.size)
-        np.add.at(right, one.dofs, -one.gradient)
-        way = system.solve(right)
-        if way is None:
+        np.add.at(right, contact.dofs, -contact.gradient)
+        response = system.solve(right)
+        if response is None:
             continue
-        way *= _FALLS[one.sharp]
-        share = float(np.abs(way[places]).max()) / motion
-        for group in told:
-            more = sum(float(other.foreseen(way).sum()) - other.push for other in group)
-            more += _FALLS[one.sharp] * one.push if any(other is one for other in group) else 0.0
+        response *= _FALLS[contact.sharp]
+        share = float(np.abs(response[places]).max()) / motion
+        for group in groups:
+            change = sum(float(other.predicted_forces(response).sum()) - other.push for other in group)
+            change += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
             known = sum(other.push for other in group)
-            share = max(share, abs(more) / max(known, _FAINT * largest))
+            share = max(share, abs(change) / max(known, _FAINT * largest))
         for gap, opening, compliance in beside:
-            overlap = -(gap + float(opening @ way))
+            overlap = -(gap + float(opening @ response))
             if overlap > 0.0:
                 share = max(share, overlap / compliance / (_FAINT * largest))
-        found[one.pair] = share
-    return found
+        effects[contact.pair] = share
+    return effects
 
 
-def _told(pressing: Iterable[Touch]) -> list[list[Touch]]:
-    """Contacts whose pushes are known: those that press one beam at one place by their sum alone.
+def _determinate_groups(pressing: Iterable[Touch]) -> list[list[Touch]]:
+    """Groups of contacts with determinate sums of forces: contacts of a beam at the same place form a group.
 
-    Of what presses beside a joint that lies on it only the moment about the joint is, which the motion tells.
+    Contacts beside a joint on their surface are left out: only their moment about the joint is determinate, which the
+    motion reflects.
     """
     groups: list[list[Touch]] = []
-    for one in pressing:
-        if _beside_joint(one):
+    for contact in pressing:
+        if _beside_joint(contact):
             continue
         for group in groups:
-            if _at_one_place(group[0], one):
-                group.append(one)
+            if _at_one_place(group[0], contact):
+                group.append(contact)
                 break
         else:
-            groups.append([one])
+            groups.append([contact])
     return groups
 
 
-def _at_one_place(one: Touch, other: Touch) -> bool:
-    """Whether two contacts push the same beam to the same side at places that no element parts."""
-    if one.pair.first != other.pair.first:
+def _at_one_place(contact: Touch, other: Touch) -> bool:
+    """True if two contacts push the same beam to the same side within an element."""
+    if contact.pair.first != other.pair.first:
         return False
-    apart = max(one.zeta.min(), other.zeta.min()) - min(one.zeta.max(), other.zeta.max())
-    return apart < POINT and float(one.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
+    apart = max(contact.zeta.min(), other.zeta.min()) - min(contact.zeta.max(), other.zeta.max())
+    return apart < POINT and float(contact.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
 
 
-def _beside(
+def _open_contacts(
     model: Model,
     system: System,
-    open_ones: Iterable[Contact],
+    waiting: Iterable[Contact],
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
 ) -> list[tuple[float, Array, float]]:
-    """Of each contact that is open: its least gap, what that goes by (size,), and its compliance.
+    """Least gap, its derivative (size,) and its compliance for every open contact.
 
-    Not of what is least open beside a joint that lies on it, where gaps are rounded to nought.
+    Contacts nearest to a joint on their surface are left out, because the gap there is zero up to round-off.
     """
-    found = []
-    for pair in open_ones:
+    contacts = []
+    for pair in waiting:
         gap = least_gap(model, pair, system.z)
         if not 0.0 <= gap < _NEAR:
             continue
@@ -149,5 +156,5 @@ def _beside(
         np.add.at(opening, there.dofs, there.mean)
         opened = system.solve(opening)
         if opened is not None and (compliance := float(opening @ opened)) > 0.0:
-            found.append((gap, opening, compliance))
-    return found
+            contacts.append((gap, opening, compliance))
+    return contacts

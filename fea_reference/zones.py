@@ -1,4 +1,4 @@
-"""Where two beams overlap: the gap along the first beam, and the intervals on which it is negative.
+"""Zones of overlap of two beams: the gap along the first beam, and the intervals with a negative gap.
 
 ======  =====================================================================================
 symbol  meaning
@@ -11,15 +11,15 @@ g       gap, side·d − T
 J, a    |x_m'| and n·x_m'', by ζ_m
 ======  =====================================================================================
 
-The closest point moves with ζ by J (τ·x')/(J² − d a), and with it n; thence
+A change of ζ moves the closest point by J (τ·x')/(J² − d a), and n turns with the closest point. Hence
 
     g' = side n·x',     g'' = side [ n·x'' − a (τ·x')²/(J² − d a) ].
 
-Where thicknesses vary, T does, n leans with the second beam's surface (:mod:`fea_reference.facing`), τ with it, J is
-τ·x_m', and g' has − T' besides, by the first beam's half.
+With varying thickness T varies, n and τ lean with the second beam's surface (:mod:`fea_reference.facing`) and J is
+τ·x_m'. Then g' has the additional term −T' of the first beam's half thickness.
 
-A zone may be far narrower than an element: samples of g and g' along the beam bracket its least values and
-then its ends, which are found by Newton's method kept within the brackets.
+A zone may be far narrower than an element. Samples of g and g' along the beam therefore bracket first the minima of
+the gap, then the ends of zones; Newton's method, safeguarded by the brackets, locates both.
 """
 
 from __future__ import annotations
@@ -32,26 +32,27 @@ from numpy.typing import NDArray
 
 from cprbm_scene.answer import Array
 from fea_reference.facing import Borders, Tapers, borders, facing
-from fea_reference.hermite import NeutralLine, apart
+from fea_reference.hermite import NeutralLine, line_difference
 from fea_reference.neighbours import near_each_other, nearest
 from fea_reference.projection import project
 
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
 _END_ITERATIONS = 15
-_INSIDE = 1e-6  # elements
+_INSIDE = 1e-6  # elements: distance between the inside of an element and a node
 _ON_RAY = 1e-6  # elements
-_ARRIVED = 1e-8  # elements
-_BENT = 0.5  # of what is under the root in a parabola's zero: what is less is no small change of a step
-_SHORT = 1e-4  # elements: steps whose cubes are less than that times what is to be left
-_TURNS = 1e-4  # elements: where a gap is least it changes by the square of what is left, and what a step leaves is less
-_WITHIN = 1e-9  # of the way between two places: zones far narrower than that way begin at a gap that is least
-_EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
+_ARRIVED = 1e-8  # elements: last step of a root search
+# least value under the root of a parabola's zero, below which the parabola gives no small correction of the step
+_BENT = 0.5
+_SHORT = 1e-4  # elements: steps with a negligible third power
+_TURNS = 1e-4  # elements: last step of a search for a minimum, where the gap changes with the square of the error
+_WITHIN = 1e-9  # share of an interval: far narrower zones begin at a minimum of the gap
+_EVEN = 3.0  # times the mean slope: a cubic with smaller end slopes is monotonic
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """g, g' and g'' by ζ, and ζ_m, at some places (k,); ``found`` where there is a closest point."""
+    """g, g', g'' by ζ and ζ_m at places (k,); ``found`` (k,) is True where a closest point exists."""
 
     g: Array
     slope: Array
@@ -61,24 +62,28 @@ class Gap:
 
     @property
     def rows(self) -> tuple[Array, Array, Array, Array]:
-        """All of them but ``found``."""
+        """The rows g, g', g'' and ζ_m, without ``found``."""
         return self.g, self.slope, self.curvature, self.zeta_m
 
-    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
-        """At some of the places only."""
-        g, slope, curvature, zeta_m = (one[which] for one in self.rows)
-        return Gap(g, slope, curvature, zeta_m, self.found[which])
+    def chosen(self, selection: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
+        """The gap at a selection of the places."""
+        g, slope, curvature, zeta_m = (row[selection] for row in self.rows)
+        return Gap(g, slope, curvature, zeta_m, self.found[selection])
 
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """A gap at places ``zeta`` (k,) in order, its least values among them, from which follows where it is small.
+    """A gap at ordered places ``zeta`` (k,), its minima included, from which the zones below any level follow.
 
-    Of a beam and itself there may be several such sequences, one after the other, that are no neighbours.
+    For self-contact several such sequences follow each other; the last place of a sequence is no neighbour of the
+    next.
 
-    ``at`` gives it at other places ζ, its closest points sought from ζ_m; ``neighbours`` (k−1,) says whether it is
-    known between a place and the next; ``kinks`` are those of the places, but for nodes, at which it has a kink.
-    ``least`` is its least value anywhere, an upper bound of it where there are no places.
+    Attributes:
+        at: gap at other places ζ (k,), with initial guesses ζ_m (k,) of the closest points.
+        there: gap at ``zeta``.
+        neighbours: (k−1,), True if the gap is defined between a place and the next.
+        kinks: places, other than nodes, with a kink of the gap.
+        least: minimum of the gap, or an upper bound without places.
     """
 
     at: Callable[[Array, Array], Gap]
@@ -89,25 +94,25 @@ class Survey:
     least: float
 
     def below(self, level: float) -> Zones:
-        """The intervals on which the gap is below a level, each as long as its element lets it be."""
+        """Intervals on which the gap is below ``level``, divided at nodes and kinks only."""
         if self.least >= level:
-            return none(self.least)
+            return no_zones(self.least)
         zeta, neighbours, there = self.zeta, self.neighbours, self.there
         g, zeta_m = there.g - level, there.zeta_m
 
         def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array, Array]:
-            one = self.at(where, guess)
-            return one.g - level, one.slope, one.curvature, one.zeta_m
+            gap_there = self.at(where, guess)
+            return gap_there.g - level, gap_there.slope, gap_there.curvature, gap_there.zeta_m
 
         ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
             where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
             new = np.array([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = _behind(np.array([zeta, g, zeta_m]), ends, new)
-            neighbours = _parted(neighbours, ends)
+            zeta, g, zeta_m = _with_columns(np.array([zeta, g, zeta_m]), ends, new)
+            neighbours = _with_neighbours(neighbours, ends)
         inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
-        # What follows on within one element is one interval: the gap is smooth there.
+        # The gap is smooth within an element, so that adjacent parts form a single interval.
         parted = zeta[inside] == np.floor(zeta[inside])
         if self.kinks:
             parted |= np.isin(zeta[inside], self.kinks)
@@ -123,10 +128,10 @@ class Survey:
 
 @dataclass(frozen=True, slots=True)
 class Zones:
-    """Intervals (k, 2) of ζ with a negative gap, none of which holds a node of either beam in its inside.
+    """Intervals (k, 2) of ζ with a negative gap; no interval has a node of either beam in its interior.
 
-    ``zeta_m`` (k, 2) are the closest points of their ends; ``least`` is the least gap anywhere, a bound of it where
-    what may touch is far apart.
+    ``zeta_m`` (k, 2) are the closest points of the interval ends. ``least`` is the minimum of the gap, or a bound of
+    the minimum for distant beams.
     """
 
     intervals: Array
@@ -135,16 +140,16 @@ class Zones:
 
     @property
     def begins(self) -> NDArray[np.bool_]:
-        """Which intervals (k,) are the first of a zone: those that the one before does not reach."""
+        """True for intervals (k,) that start a zone: the interval before ends elsewhere."""
         return np.append(True, self.intervals[1:, 0] > self.intervals[:-1, 1])[: len(self.intervals)]
 
     @property
     def numbers(self) -> NDArray[np.int64]:
-        """The zone that each interval belongs to, (k,)."""
+        """Number of the zone of every interval, (k,)."""
         return np.cumsum(self.begins) - 1
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Zones:
-        """Some of the intervals only, or in another order."""
+        """A selection, or another order, of the intervals."""
         return Zones(self.intervals[which], self.zeta_m[which], self.least)
 
 
@@ -159,18 +164,18 @@ def gap(
     *,
     ended: bool = False,
 ) -> Gap:
-    """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,).
+    """The gap at ``zeta`` (k,), with initial guesses ``zeta_m`` (k,) of the closest points.
 
-    ``sides`` are the sides (k,) at ζ and ζ_m where n·(x − x_m) is d.  Whether what is beyond an end of the second beam
-    sees that, ``ended`` says.
+    ``sides`` gives the sides (k,) from ζ, ζ_m and d. With ``ended``, points beyond an end of the second beam face
+    this end.
     """
     there = first.around(zeta)
     points = first.nodes[there.element] + there.way
     edge = None if tapers is None else tapers.second
     faced = facing(second, edge, points, zeta_m, lambda at_m, d: sides(zeta, at_m, d), ended=ended)
     across, J, zeta_m = faced.across, faced.c, faced.zeta_m
-    back = (1j * faced.w).conj()  # n; of a product with it n·v is real, and −τ·v imaginary
-    d = (back * apart(first, there, second, across)).real
+    back = (1j * faced.w).conj()  # n conjugate: of a product with it, the real part is n·v and the imaginary part −τ·v
+    d = (back * line_difference(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
     bend = -a / np.where(faced.fixed, 1.0, J**2 - d * a)
@@ -185,14 +190,14 @@ def gap(
 
 
 def one_side(side: float) -> Callable[[Array, Array, Array], Array]:
-    """The same side everywhere."""
+    """Side function with a constant value."""
     return lambda zeta, _zeta_m, _d: np.full(zeta.shape, side)
 
 
 def side_of(first: NeutralLine, second: NeutralLine, unseen: float = 1.0) -> float:
-    """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right.
+    """Side of the second beam on which the first lies: +1 left of its direction, −1 right.
 
-    Where no place of the first has a closest point on the second it is on neither, and what is ``unseen`` stands.
+    ``unseen`` is returned if no place of the first beam has a closest point on the second.
     """
     rays, reach = borders(second, None, 1.0), _reach(first, second, 0.0)
     zeta = _samples(first, rays, np.arange(first.n), np.arange(first.n + 1), reach)
@@ -203,24 +208,24 @@ def side_of(first: NeutralLine, second: NeutralLine, unseen: float = 1.0) -> flo
     if d.size == 0:
         return unseen
     least = d[np.argmin(np.abs(d))]
-    # Lines that touch at the start show their side elsewhere.
+    # Lines that touch at rest have a side elsewhere.
     return float(np.sign(least if abs(least) > 1e-9 else d.sum())) or 1.0
 
 
-def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
-    """Whether an end of the first beam has its closest point in the inside of the second."""
-    return bool(np.isfinite(end_apart(first, second)))
+def has_end_over(first: NeutralLine, second: NeutralLine) -> bool:
+    """True if an end of the first beam has its closest point inside the second beam."""
+    return bool(np.isfinite(end_distance(first, second)))
 
 
-def end_apart(first: NeutralLine, second: NeutralLine) -> float:
-    """How far the nearer one of them is from that; infinite where neither end has one."""
+def end_distance(first: NeutralLine, second: NeutralLine) -> float:
+    """Distance of the nearer end of the first beam from the second; infinite without a closest point inside."""
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
     over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
     return float(np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))[over].min(initial=np.inf))
 
 
-def seen(
+def survey_pair(
     first: NeutralLine,
     second: NeutralLine,
     side: float,
@@ -228,59 +233,61 @@ def seen(
     tapers: Tapers | None = None,
     free: tuple[float, float] = (0.0, np.inf),
 ) -> Survey:
-    """The gap of two beams wherever it is less than the second's longest element, at ``free`` places of the first."""
+    """Gap survey of two beams at places ζ in ``free``, wherever the gap is below the second's longest element."""
 
     def at(where: Array, guess: Array) -> Gap:
         return gap(first, second, one_side(side), T, tapers, where, guess)
 
     reach, none_there = _reach(first, second, T), np.empty(0)
-    within = out_of_reach(first, second, T)
+    within = search_distance(first, second, T)
     begin, end = int(free[0]), int(min(free[1], first.n - 1.0)) + 2
-    one, other = near_each_other(first.nodes[begin:end], second.nodes, within + first.longest + second.longest)
-    one = one + begin
-    apart_by, _ = nearest(first.nodes[one], second.nodes[other])
+    nodes_first, nodes_second = near_each_other(
+        first.nodes[begin:end], second.nodes, within + first.longest + second.longest
+    )
+    nodes_first = nodes_first + begin
+    apart_by, _ = nearest(first.nodes[nodes_first], second.nodes[nodes_second])
     close = np.zeros(first.n + 1, dtype=bool)
-    close[one[apart_by < within]] = True
+    close[nodes_first[apart_by < within]] = True
     beside = np.flatnonzero(close[:-1] | close[1:])
     if not beside.size:
-        nothing = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
-        return Survey(at, none_there, nothing, none_there.astype(bool), (), float(apart_by.min()) - T)
-    rays = borders(second, None if tapers is None else tapers.second, side).among(other)
-    zeta = _samples(first, rays, beside, one, reach)
+        empty = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
+        return Survey(at, none_there, empty, none_there.astype(bool), (), float(apart_by.min()) - T)
+    rays = borders(second, None if tapers is None else tapers.second, side).among(nodes_second)
+    zeta = _samples(first, rays, beside, nodes_first, reach)
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
     zeta = np.unique(np.clip(zeta, *free))
     x = first.around(zeta)
-    distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[other])
+    distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[nodes_second])
     near = np.flatnonzero(distance < reach)
-    there = at(zeta[near], other[nearest_node[near]].astype(float))
-    # A point that sees the far side of a strongly bent second beam is no overlap.
+    there = at(zeta[near], nodes_second[nearest_node[near]].astype(float))
+    # a place that faces the far side of a strongly bent second beam does not overlap
     usable = there.found & (there.g > -T - reach)
     if not usable.any():
         return Survey(at, zeta[:0], there.chosen(near[:0]), np.empty(0, dtype=bool), (), float(distance.min()) - T)
     if not usable.all():
         near, there = near[usable], there.chosen(usable)
-    return survey(at, zeta[near], there, np.diff(near) == 1, knots, floor=rounded(first, second, T))
+    return survey(at, zeta[near], there, np.diff(near) == 1, knots, floor=gap_round_off(first, second, T))
 
 
 def overlap(
     first: NeutralLine, second: NeutralLine, T: float, where: Survey, level: float, rays: Sequence[Borders]
 ) -> Zones:
-    """All intervals on which the gap that was seen is below a ``level``, which is less than the second's element.
+    """Zones with a surveyed gap below ``level``, a level smaller than the second beam's element.
 
-    Below by more than the gap is rounded to: beams that are held side by side lie on each other without pressing.
-    Intervals end where the first beam passes one of the second's ``rays``.
+    The gap has to be below the level by more than round-off, so that beams held side by side do not press. Intervals
+    end where the first beam passes a ray of ``rays``.
     """
-    inside = where.below(level - rounded(first, second, T))
+    inside = where.below(level - gap_round_off(first, second, T))
     split = inside.intervals, inside.zeta_m
-    for one in rays:
-        split = _split_at(first, one, *split)
+    for borders_of_side in rays:
+        split = _split_at(first, borders_of_side, *split)
     return Zones(*split, inside.least)
 
 
-def rounded(first: NeutralLine, second: NeutralLine, T: float) -> float:
-    """What the gap of two beams is rounded to."""
+def gap_round_off(first: NeutralLine, second: NeutralLine, T: float) -> float:
+    """Round-off of the gap of two beams."""
     return float(np.finfo(float).eps * (abs(T) + first.longest + second.longest))
 
 
@@ -293,7 +300,7 @@ def negative(
     joined: tuple[float, ...] = (),
     floor: float = 0.0,
 ) -> Zones:
-    """The intervals on which a gap is negative, see :func:`survey`."""
+    """Zones with a negative gap; arguments as for :func:`survey`."""
     return survey(at, zeta, there, neighbours, kinks, joined, floor).below(0.0)
 
 
@@ -306,24 +313,25 @@ def survey(
     joined: tuple[float, ...] = (),
     floor: float = 0.0,
 ) -> Survey:
-    """Where a gap is least, and whether anything may be beside.
+    """Survey of a gap with its minima added to the places.
 
     Args:
-        at: the gap at places ζ (k,), the closest points sought from ζ_m (k,).
-        zeta: places (k,) in order, all nodes that matter among them; ``there`` is the gap at them.
-        neighbours: whether the gap is known between a place and the next (k−1,).
-        kinks: those of the places, but for nodes, at which the gap has a kink.
-        joined: those at which a joint makes it zero, which is no least gap.
-        floor: what the gap is rounded to.
+        at: gap at places ζ (k,), with initial guesses ζ_m (k,).
+        zeta: ordered places (k,), all relevant nodes included.
+        there: gap at ``zeta``.
+        neighbours: (k−1,), True if the gap is defined between a place and the next.
+        kinks: places, other than nodes, with a kink of the gap.
+        joined: places where a joint makes the gap zero; they are no minima.
+        floor: round-off of the gap.
     """
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     slope, zeta_m = there.slope, there.zeta_m
 
     def slope_at(where: Array, guess: Array) -> tuple[Array, Array, None, Array]:
-        one = at(where, guess)
-        return one.slope, one.curvature, None, one.zeta_m
+        gap_there = at(where, guess)
+        return gap_there.slope, gap_there.curvature, None, gap_there.zeta_m
 
-    # a largest value parts what is below zero on both sides of it, and tells nothing anywhere else
+    # a maximum matters only between two places with negative gaps
     parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0) & parts)
     if turning.size and kinks:
@@ -331,22 +339,24 @@ def survey(
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
         where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor, _TURNS)
-        zeta, there, neighbours = _with(zeta, there, neighbours, turning, where, at(where, guess))
+        zeta, there, neighbours = _with_places(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
     return Survey(at, zeta, there, neighbours, kinks, least)
 
 
-def _with(
-    zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
+def _with_places(
+    zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, inserted: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
-    """The same with further places ``where``, each behind the one ``left`` of it."""
-    rows = _behind(np.array([zeta, *there.rows, there.found]), left, np.array([where, *more.rows, more.found]))
+    """Places and gap with further places ``where``, inserted behind the places with index ``left``."""
+    rows = _with_columns(
+        np.array([zeta, *there.rows, there.found]), left, np.array([where, *inserted.rows, inserted.found])
+    )
     zeta, g, slope, curvature, zeta_m, found = rows
-    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _parted(neighbours, left)
+    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _with_neighbours(neighbours, left)
 
 
-def _behind(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
-    """``rows`` (r, k) with columns ``new`` (r, m) behind those ``left`` (m,) of them, (r, k+m)."""
+def _with_columns(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
+    """``rows`` (r, k) with columns ``new`` (r, m) inserted behind the columns ``left`` (m,); (r, k+m)."""
     old = np.ones(rows.shape[1] + left.size, dtype=bool)
     at = left + np.arange(1, left.size + 1)
     old[at] = False
@@ -355,8 +365,8 @@ def _behind(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
     return both
 
 
-def _parted(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Whether places follow each other (k+m−1,), new ones being behind those ``left`` (m,), which others followed."""
+def _with_neighbours(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """``neighbours`` (k+m−1,) after the insertion of places behind ``left`` (m,), which all had a neighbour."""
     times = np.ones(neighbours.size, dtype=np.int64)
     times[left] = 2
     return np.repeat(neighbours, times)
@@ -365,11 +375,10 @@ def _parted(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[n
 def _with_bends(
     at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbours: NDArray[np.bool_]
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
-    """The same with further places, where between two of the old ones the gap may have a largest and a least value.
+    """Places and gap with further places where the gap may have both a maximum and a minimum between two places.
 
-    Its slope has one sign at both, and by the cubic through both places' g and g' it turns towards the other sign
-    and back: the new place is where it turns back.  A zone that was not looked for there would come into being at its
-    full width when one of its ends passes a place, and the force with a jump.
+    The slope has the same sign at both, but the cubic through g and g' of both has two turning points; the new place
+    is the second. A zone missed there would appear at its full width, and its force with a jump.
     """
     width, slope = np.where(neighbours, np.diff(zeta), 1.0), there.slope
     before, behind, rise = slope[:-1], slope[1:], np.diff(there.g) / width
@@ -382,35 +391,35 @@ def _with_bends(
         return zeta, there, neighbours
     share = turned[bends]
     where = zeta[bends] + share * width[bends]
-    more = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
-    return _with(zeta, there, neighbours, bends, where, more)
+    inserted = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
+    return _with_places(zeta, there, neighbours, bends, where, inserted)
 
 
-def out_of_reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
-    """Where no node of either beam is nearer to one of the other than this, nothing is seen of the gap."""
+def search_distance(first: NeutralLine, second: NeutralLine, T: float) -> float:
+    """Distance of nodes beyond which the gap is not evaluated."""
     return _reach(first, second, T) + first.longest
 
 
-def nodes_apart(first: NeutralLine, second: NeutralLine) -> float:
-    """Of the nodes of two beams that are nearest to each other."""
-    one, other = near_each_other(first.nodes, second.nodes, 0.0)
-    return float(nearest(first.nodes[one], second.nodes[other])[0].min())
+def node_distance(first: NeutralLine, second: NeutralLine) -> float:
+    """Least distance between nodes of two beams."""
+    nodes_first, nodes_second = near_each_other(first.nodes, second.nodes, 0.0)
+    return float(nearest(first.nodes[nodes_first], second.nodes[nodes_second])[0].min())
 
 
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
-    """Where no node of the second beam is nearer than this, neither a place nor its neighbours can touch."""
+    """Distance from the second beam's nodes beyond which neither a place nor its neighbours can touch."""
     return float(2.0 * abs(T) + 2.0 * second.longest + first.longest)
 
 
 def _samples(
     first: NeutralLine, rays: Borders, elements: NDArray[np.int64], nodes: NDArray[np.int64], reach: float
 ) -> Array:
-    """Equal steps within those ``elements``, and the places straight across from the second beam's nodes in reach.
+    """Equal steps within ``elements``, and the places opposite to the second beam's nodes.
 
-    Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step; at the others the
-    gap's curvature jumps.  ``nodes`` are those of the first beam of which some may be in reach.
+    The gap is undefined beyond an end, and a zone up to there may be narrower than a step; at inner nodes the
+    curvature of the gap jumps. ``nodes`` are nodes of the first beam within reach.
     """
-    even, _ = stepped(elements, ())
+    even, _ = steps_within(elements, ())
     distance, nearest_node = nearest(rays.points, first.nodes[nodes])
     near = distance < reach
     if not near.any():
@@ -430,11 +439,11 @@ def _samples(
     return np.unique(np.concatenate([even, zeta]))
 
 
-def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Array, NDArray[np.bool_]]:
-    """Equal steps within ``elements`` (k,) that are in order, and ``knots`` in them; whether each is followed at once.
+def steps_within(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Array, NDArray[np.bool_]]:
+    """Equal steps within ordered ``elements`` (k,), with the ``knots`` inside them.
 
     Returns:
-        Places (m,), and whether nothing is left out between each and the next (m−1,).
+        Places (m,), and (m−1,) True if a place and the next belong to the same run of elements.
     """
     zeta = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT).ravel()
     ends = elements[np.append(np.diff(elements) > 1, True)] + 1.0
@@ -445,8 +454,8 @@ def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Arra
     return zeta, ~np.isin(zeta[:-1], ends) | np.isin(zeta[:-1], elements)
 
 
-def none(least: float) -> Zones:
-    """No interval at all."""
+def no_zones(least: float) -> Zones:
+    """Zones without any interval."""
     return Zones(np.empty((0, 2)), np.empty((0, 2)), least)
 
 
@@ -460,15 +469,14 @@ def _roots(
     floor: float = 0.0,
     arrived: float = _ARRIVED,
 ) -> tuple[Array, Array]:
-    """Roots between the places ``left`` and the next, where ``values`` change their sign; with their ζ_m.
+    """Roots between the places ``left`` and the next, where ``values`` change sign, and their ζ_m.
 
-    ``share`` of the way from one to the next is where to begin.  Where a value times what is left of the way is no
-    more than the ``floor``, what it is the slope of does not change any more, and any place will do: beams that lie on
-    something have slopes that are nothing but round-off, and no root to be found.  A step of Newton's method that is
-    shorter than ``arrived`` (elements) is the last, and one of halving that is no more than round-off.
+    Newton's method, safeguarded by bisection, starts at the ``share`` of the interval. A step below ``arrived``
+    (elements) is the last. If a value times the bracket is below ``floor``, the integral of the function does not
+    change any more and any place is a root: slopes of beams that lie on a surface are pure round-off.
 
-    Where ``function`` knows its second derivative, a step goes to where the parabola through all three is zero, and is
-    the last where it differs by as little from the straight one: what is left is less by as much as it is short.
+    If ``function`` returns its second derivative, a step leads to the zero of the osculating parabola. The difference
+    from the Newton step then bounds the error.
     """
     low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
@@ -482,38 +490,37 @@ def _roots(
         below = f * rising < 0.0
         low, high = np.where(below, x, low), np.where(below, high, x)
         flat = df == 0.0
-        way = -f / np.where(flat, 1.0, df)
-        newton = x + way
+        newton_step = -f / np.where(flat, 1.0, df)
+        newton = x + newton_step
         if bend is not None:
-            more = _to_parabola(way, df, bend)
-            newton += more
-        # A step that rounding takes out of the bracket has arrived; halving would begin again from afar.
+            correction = _to_parabola(newton_step, df, bend)
+            newton += correction
+        # a step out of the bracket by round-off has converged; bisection would restart from afar
         good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
         moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
-        nothing = np.abs(f) * (high - low) <= floor
-        step = np.where(nothing, 0.0, moved - x)
+        converged = np.abs(f) * (high - low) <= floor
+        step = np.where(converged, 0.0, moved - x)
         x, guess = x + step, guess + pace * step
         size = np.abs(step)
         if bend is not None:
-            size = np.where(good & (size < _SHORT) & (more != 0.0), np.minimum(size, np.abs(more)), size)
-        # the last step's error is of second order, or of third
+            size = np.where(good & (size < _SHORT) & (correction != 0.0), np.minimum(size, np.abs(correction)), size)
+        # the error of the last step is of second or third order
         going = size >= np.where(good, arrived, _ARRIVED)
         places[sought], closest_there[sought] = x, guess
         if not going.any():
             break
         if not going.all():
             sought = sought[going]
-            low, high, x, guess, rising, pace = (one[going] for one in (low, high, x, guess, rising, pace))
+            low, high, x, guess, rising, pace = (array[going] for array in (low, high, x, guess, rising, pace))
     return places, closest_there
 
 
-def _to_parabola(way: Array, slope: Array, bend: Array) -> Array:
-    """How much farther it is to the nearer zero of a parabola than the ``way`` (k,) to that of its tangent.
-
-    Zero where that is no small part of the way.
-    """
-    under = 1.0 + 2.0 * way * bend / np.where(slope == 0.0, np.inf, slope)
-    return np.asarray(np.where(under > _BENT, way * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0))
+def _to_parabola(newton_step: Array, slope: Array, bend: Array) -> Array:
+    """Difference between the nearer zero of a parabola and the ``newton_step`` (k,); zero if it is not small."""
+    under = 1.0 + 2.0 * newton_step * bend / np.where(slope == 0.0, np.inf, slope)
+    return np.asarray(
+        np.where(under > _BENT, newton_step * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0)
+    )
 
 
 def _at_kinks(
@@ -524,9 +531,9 @@ def _at_kinks(
     left: NDArray[np.int64],
     kinks: tuple[float, ...],
 ) -> NDArray[np.bool_]:
-    """Whether the slope changes its sign at a kink, which is a place already, and not between the places, (k,).
+    """True (k,) if the slope changes sign at a kink, which is a place already, and not between places.
 
-    At a kink it is that of one side; a root sought from there would be found by halving, and is the kink.
+    At a kink the slope is one-sided. A root search would find the kink again, by bisection.
     """
     right = left + 1
     at_kink = np.zeros(left.size, dtype=bool)
@@ -540,12 +547,12 @@ def _at_kinks(
 
 
 def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
-    """The share of the way from ``left`` to the next at which g' is zero: ζ as a cubic of g', or straight."""
+    """Share of the interval behind ``left`` with g' = 0: by inverse cubic interpolation, or linear."""
     right = left + 1
     rise = slope[right] - slope[left]
     linear = -slope[left] / rise
     width = zeta[right] - zeta[left]
-    by_width = rise / np.where(width == 0.0, np.inf, width)  # a kink is a place twice
+    by_width = rise / np.where(width == 0.0, np.inf, width)  # a kink counts as a double place
     first, last = (by_width / np.where(curvature[i] == 0.0, np.inf, curvature[i]) for i in (left, right))
     rest = 1.0 - linear
     cubic = linear * (linear * (3.0 - 2.0 * linear) + rest * (rest * first - linear * last))
@@ -554,20 +561,20 @@ def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64
 
 
 def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
-    """The share of the way from ``left`` to the next where a parabola through the overlapping one is zero."""
+    """Share of the interval behind ``left`` at the zero of the parabola at its negative end."""
     forward = g[left] < 0.0
     inner = np.where(forward, left, left + 1)
-    way = np.where(forward, 1.0, -1.0)
+    direction = np.where(forward, 1.0, -1.0)
     width = zeta[left + 1] - zeta[left]
-    a, b, c = 0.5 * curvature[inner] * width**2, way * slope[inner] * width, g[inner]
+    a, b, c = 0.5 * curvature[inner] * width**2, direction * slope[inner] * width, g[inner]
     root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
-    # The stable form of (−b + root)/(2a)
+    # stable form of (−b + root)/(2a)
     distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN, 1.0 - _WITHIN)
     return np.where(forward, distance, 1.0 - distance)
 
 
 def _split_at(first: NeutralLine, rays: Borders, intervals: Array, closest: Array) -> tuple[Array, Array]:
-    """Cut intervals where the first beam passes a ray: the gap's curvature jumps there."""
+    """Divide intervals where the first beam passes a ray: the curvature of the gap jumps there."""
     low, high = closest.min(axis=1) - _ON_RAY, closest.max(axis=1) + _ON_RAY
     owner, ray = np.nonzero((rays.zeta > low[:, None]) & (rays.zeta < high[:, None]))
     if not owner.size:
@@ -579,8 +586,8 @@ def _split_at(first: NeutralLine, rays: Borders, intervals: Array, closest: Arra
         return (r * back).real, (there.ahead * back).real
 
     before, behind = (off(intervals[owner, i])[0] for i in (0, 1))
-    nothing = _ARRIVED * np.diff(intervals[owner])[:, 0] * np.abs(off(intervals[owner].mean(axis=1))[1])
-    passes = (before * behind < 0.0) & (np.minimum(np.abs(before), np.abs(behind)) > nothing)
+    tolerance = _ARRIVED * np.diff(intervals[owner])[:, 0] * np.abs(off(intervals[owner].mean(axis=1))[1])
+    passes = (before * behind < 0.0) & (np.minimum(np.abs(before), np.abs(behind)) > tolerance)
     owner, ray, before, behind = owner[passes], ray[passes], before[passes], behind[passes]
     zeta = intervals[owner, 0] + before / (before - behind) * np.diff(intervals[owner])[:, 0]
     for _ in range(_ITERATIONS if owner.size else 0):

@@ -1,6 +1,6 @@
-"""A third opinion: the mechanism as a plane solid, by quadrilaterals of second order and contact of real edges.
+"""Third solver: the mechanism as a plane solid, with quadrilaterals of second order and contact of real edges.
 
-It reads a :class:`cprbm_scene.Scene` and hands back a :class:`cprbm_scene.Answer`; it knows nothing of beams' theories.
+The solver turns a :class:`cprbm_scene.Scene` into a :class:`cprbm_scene.Answer`, independently of beam theory.
 """
 
 from fea_reference.solid.settings import Settings

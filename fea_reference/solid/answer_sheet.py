@@ -1,4 +1,4 @@
-"""Point forces, contact states and body motions of a solid for the answer sheet, SI; a solid states no beams.
+"""Point forces, contact states and body motions of a solid for the answer sheet, SI; a solid has no beam states.
 
 Contacts act at the Gauss points of their zones, or in a corner.
 """
@@ -9,16 +9,16 @@ import numpy as np
 
 from cprbm_scene.answer import Array, ContactState, PointForce, PointForces, contact_states, frozen_array
 from cprbm_scene.statement import Scene, TurningBody
-from fea_reference.solid.bodies import is_own, stands_on
+from fea_reference.solid.bodies import is_face_alone, rotation_unknown
 from fea_reference.solid.contacts import Touch
 from fea_reference.solid.march import March
-from fea_reference.solid.pairs import Tip
+from fea_reference.solid.pairs import CornerOnEdge
 from fea_reference.solid.skin import Skin
-from fea_reference.solid.supports import place, support
+from fea_reference.solid.supports import place, tie_reaction
 
 
 def point_forces(scene: Scene, march: March) -> PointForces:
-    """All forces but the loads."""
+    """All forces except the loads."""
     rows = [*_at_faces(scene, march), *_on_bodies(scene, march), *_at_stops(march)]
     rows += [row for touch in march.system.touches for row in _at_contact(scene, march, touch)]
     units = march.model.units
@@ -46,10 +46,10 @@ def _at_faces(scene: Scene, march: March) -> Iterator[PointForce]:
     """Forces of joints on the beams' end faces and on the joined bodies."""
     model, system = march.model, march.system
     for tie in model.ties:
-        at, body, (force, moment) = place(model, system, tie), model.bodies[tie.body], support(model, system, tie)
+        at, body, (force, moment) = place(model, system, tie), model.bodies[tie.body], tie_reaction(model, system, tie)
         s = 0.0 if tie.end == "start" else model.lengths[tie.beam]
         yield PointForce(tie.point, model.mesh.names[tie.beam], s, at, force, moment)
-        if body.dofs is not None and not is_own(tie, scene):  # the row of an own body states the reaction
+        if body.dofs is not None and not is_face_alone(tie, scene):  # the row of an own body states the reaction
             yield PointForce(tie.point, body.name, np.nan, at, -force, -moment)
 
 
@@ -74,7 +74,7 @@ def _at_stops(march: March) -> Iterator[PointForce]:
     for stop in model.stops:
         moment = stop.moment(z)
         if moment:
-            tie = next(tie for tie in model.ties if stands_on(tie, model.bodies) == stop.psi)
+            tie = next(tie for tie in model.ties if rotation_unknown(tie, model.bodies) == stop.psi)
             at, s = place(model, march.system, tie), 0.0 if tie.end == "start" else model.lengths[tie.beam]
             yield PointForce(stop.name, model.mesh.names[tie.beam], s, at, np.zeros(2), moment)
             if stop.phi is not None:
@@ -84,12 +84,12 @@ def _at_stops(march: March) -> Iterator[PointForce]:
 def _at_contact(scene: Scene, march: March, touch: Touch) -> Iterator[PointForce]:
     """Forces of a contact on both edges, or on the edge and the rigid body."""
     pair, body = touch.pair, march.model.bodies[touch.pair.body]
-    mine = np.hypot(*touch.push.T) > 0.0
-    points, push = touch.points[mine], touch.push[mine]
-    yield from _on_edge(scene, march, pair.name, (pair.skin, touch.zeta[mine]), points, push)
-    other = pair.other.skin if isinstance(pair.other, Tip) else pair.other
+    pressing = np.hypot(*touch.push.T) > 0.0
+    points, push = touch.points[pressing], touch.push[pressing]
+    yield from _on_edge(scene, march, pair.name, (pair.skin, touch.zeta[pressing]), points, push)
+    other = pair.other.skin if isinstance(pair.other, CornerOnEdge) else pair.other
     if isinstance(other, Skin):
-        yield from _on_edge(scene, march, pair.name, (other, touch.facing[mine]), points, -push)
+        yield from _on_edge(scene, march, pair.name, (other, touch.facing[pressing]), points, -push)
     elif body.dofs is not None:
         for at, force in zip(points, push, strict=True):
             yield PointForce(pair.name, body.name, np.nan, at, -force, 0.0)

@@ -1,4 +1,4 @@
-"""The area that a beam fills: its neutral line and half the thickness to either side.
+"""The area of a beam: its neutral line and half the thickness on either side.
 
 ======  =====================================================================
 symbol  meaning
@@ -8,8 +8,8 @@ u       fraction of the neutral line's arc length, 0 at its start, 1 at its end
 p, n    point of the line and its normal to the left
 t       thickness
 x       point of the area, p + η t/2 n
-d, σ    distance from a held face, and what grows evenly from element to element
-ℓ, δ    depth in which elements are shorter, and the share of it where they are shortest
+d, σ    distance from a held face, and a coordinate with equal increments per element
+ℓ, δ    depth of the graded elements, and its share with the shortest elements
 ======  =====================================================================
 """
 
@@ -22,7 +22,7 @@ from cprbm_scene.statement import Beam, FreeEnd, Scene
 
 _DEPTH = 1.5
 _SHORTEST = 0.125
-_MOST = 0.25  # of the length, that depth
+_MOST = 0.25  # of the length: largest depth
 
 
 def points(beam: Beam, u: Array, eta: Array) -> Array:
@@ -34,7 +34,7 @@ def points(beam: Beam, u: Array, eta: Array) -> Array:
 
 
 def fractions(beam: Beam, n: int) -> Array:
-    """Where ``n`` elements along a beam meet, (n + 1,): graded, and the nearest ones moved to the section's knots."""
+    """Element boundaries (n + 1,) along a beam: graded, with the nearest ones moved to the section's knots."""
     u = graded(beam, n)
     inner = np.arange(1, n)
     for knot in beam.knots[1:-1]:
@@ -46,18 +46,19 @@ def fractions(beam: Beam, n: int) -> Array:
 
 
 def graded(beam: Beam, n: int) -> Array:
-    """Where ``n`` elements would meet, (n + 1,): even but for held ends, where they are short.
+    """Graded element boundaries (n + 1,): equal lengths except near held ends, where elements are shorter.
 
-    At its corners the stress of a held face has no bound.  From a depth of ``_DEPTH`` thicknesses up to the face an
-    element's length falls straight to ``_SHORTEST`` of what it is elsewhere: σ = ℓ log(1 + d/δ) grows by the same in
-    each, with d from the face, ℓ the depth and δ that share of it.  Of twice as many every other place is the same.
+    The stress at the corners of a held face is unbounded. From a depth of ``_DEPTH`` thicknesses to the face the
+    element length decreases linearly to the share ``_SHORTEST``: σ = ℓ log(1 + d/δ) has equal increments, where d is
+    the distance from the face, ℓ the depth and δ its share. With twice as many elements every other boundary is
+    unchanged.
     """
     length = shape_of(beam.curve).length
     ends = zip((beam.start, beam.end), beam.thickness_at(np.array([0.0, 1.0])), strict=True)
     depths = [0.0 if isinstance(end, FreeEnd) else min(_DEPTH * t / length, _MOST) for end, t in ends]
-    more = [depth * (-np.log(_SHORTEST) - 1.0 + _SHORTEST) for depth in depths]
-    sigma = np.linspace(0.0, 1.0 + sum(more), n + 1)
-    u = sigma - more[0]
+    extra = [depth * (-np.log(_SHORTEST) - 1.0 + _SHORTEST) for depth in depths]
+    sigma = np.linspace(0.0, 1.0 + sum(extra), n + 1)
+    u = sigma - extra[0]
     for depth, there in zip(depths, (sigma, sigma[::-1]), strict=True):
         near = there < -depth * np.log(_SHORTEST)
         if near.any():
@@ -68,7 +69,7 @@ def graded(beam: Beam, n: int) -> Array:
 
 
 def too_curved(scene: Scene) -> list[Mistake]:
-    """Beams whose edge has a cusp because half of the thickness is more than the line's radius."""
+    """Mistakes for beams with a cusp of the edge, where half of the thickness exceeds the line's radius."""
     return [
         Mistake(
             f"beams.{name}.thickness",

@@ -1,8 +1,8 @@
-"""Before the first stage: ends that are drawn apart are brought to their points.
+"""Assembly before the first stage: beams' ends drawn apart from their points are moved there.
 
-Moments grow on the faces of the ends while these are free; the faces are caught where they are and their middles go
-straight to their points; the moments go away.  Stops act as soon as the ends have arrived.  While ends are free the
-mechanism is one without their rows, which are the last ones.
+Moments grow on the free end faces; the faces are then held and their middles moved straight to their points; finally
+the moments are removed. Stops can close once the ends have arrived. While ends are free, the mechanism lacks their
+rows, the last rows.
 """
 
 from dataclasses import replace
@@ -21,11 +21,11 @@ _BEYOND = 1e-9  # rad
 
 
 def assemble_ends(scene: Scene, march: March) -> None:
-    """Assemble what there is to assemble.
+    """Assemble all ends drawn apart.
 
     Raises:
-        SceneError: a stop forbids it.
-        StoppedError: it cannot be carried out.
+        SceneError: a stop forbids the assembly.
+        StoppedError: the assembly fails.
     """
     whole = march.model
     if not whole.apart:
@@ -33,51 +33,51 @@ def assemble_ends(scene: Scene, march: March) -> None:
     moments = next(i for i, part in enumerate(whole.stepped) if isinstance(part, SharePart))
     way = whole.stepped.index(WAY)
     try:
-        _stand(march, _loose(whole), march.values[:-1], march.system.z[: -len(whole.apart)])
+        _continue_with(march, _with_free_ends(whole), march.values[:-1], march.system.z[: -len(whole.apart)])
         reach(march, moments, 1.0)
-        caught = _caught(whole, march.system.z)
+        caught = _with_held_ends(whole, march.system.z)
         unheld = np.concatenate([march.system.z, np.zeros(len(whole.apart))])
-        _stand(march, replace(caught, stops=()), np.append(march.values, 1.0), unheld)
+        _continue_with(march, replace(caught, stops=()), np.append(march.values, 1.0), unheld)
         reach(march, way, 0.0)
-        forbidden = [mistake for stop in whole.stops for mistake in _forbidden(march, stop, scene)]
+        forbidden = [mistake for stop in whole.stops for mistake in _limit_mistakes(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
-        _stand(march, caught, march.values, march.system.z)
+        _continue_with(march, caught, march.values, march.system.z)
         reach(march, moments, 0.0)
     except StoppedError as stopped:
         raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped
-    # what closed meanwhile is closed before anything of the scene is loaded or driven
+    # contacts closed during the assembly are closed before any load or drive of the scene
     march.closing = dict.fromkeys(march.closing, 0.0)
 
 
-def _stand(march: March, model: Model, values: Array, z: Array) -> None:
-    """Let a march go on with another mechanism."""
+def _continue_with(march: March, model: Model, values: Array, z: Array) -> None:
+    """Continue load stepping with another mechanism."""
     march.model, march.values, march.step = model, values, np.inf
     march.system = assemble(model, march.penalties, march.settings.quadrature, values, z)
 
 
-def _loose(model: Model) -> Model:
-    """The mechanism whose ends are free, without stops."""
-    held = tuple(row for row in model.rows if not row.point)
+def _with_free_ends(model: Model) -> Model:
+    """The mechanism with free ends, without stops."""
+    remaining = tuple(row for row in model.rows if not row.point)
     drives = tuple(part for part in model.drives if part is not WAY)
-    return replace(model, rows=held, drives=drives, stops=(), size=model.size - len(model.apart))
+    return replace(model, rows=remaining, drives=drives, stops=(), size=model.size - len(model.apart))
 
 
-def _caught(model: Model, z: Array) -> Model:
-    """The mechanism whose ends are held where they are in a state ``z`` in which they were free: the way is at one."""
+def _with_held_ends(model: Model, z: Array) -> Model:
+    """The mechanism with the ends held at their positions in a state ``z`` with free ends: the way is one."""
     rows = tuple(replace(row, way=row.violation(model.bodies, z)) if row.point else row for row in model.rows)
     return replace(model, rows=rows)
 
 
-def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
-    """That an assembled end is beyond a limit of its stop, if it is."""
+def _limit_mistakes(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
+    """A mistake if an assembled end is beyond a limit of its stop; else an empty list."""
     angle = stop.angle(march.system.z)
     for key, limit, beyond in (("least", stop.least, stop.least - angle), ("most", stop.most, angle - stop.most)):
         if beyond > _BEYOND:
-            found = (
+            message = (
                 f"{limit:g} rad: a stop that forbids the assembly, by which {scene.stops[stop.name].beam!r} comes to "
                 f"stand at {angle:.4g} rad"
             )
             allowed = "limits that the assembled beam keeps, or other moments"
-            return [Mistake(f"stops.{stop.name}.{key}", found, allowed, scene.file)]
+            return [Mistake(f"stops.{stop.name}.{key}", message, allowed, scene.file)]
     return []

@@ -1,4 +1,4 @@
-"""Dead forces on a beam, spread evenly over the thickness of the section on which they act.
+"""Dead forces on a beam, distributed uniformly over the thickness of the section.
 
 ======  ==================================================================
 symbol  meaning
@@ -8,8 +8,8 @@ symbol  meaning
 ℓ_i     quadratics of Lagrange through −1, 0 and 1
 ======  ==================================================================
 
-A beam is loaded on its line.  A force at a point of a solid would sink into it without limit; spread over the section
-it has the same resultant on the line, and what differs dies out within a thickness.
+A beam is loaded on its line. A point force on a solid would have unbounded displacements. Distributed over the
+section the force has the same resultant on the line, and the difference decays within a thickness.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 @dataclass(frozen=True, slots=True)
 class AreaLoad:
-    """A load of value one: ``forces`` (k, 2) on ``nodes`` (k,)."""
+    """A unit load: ``forces`` (k, 2) on ``nodes`` (k,)."""
 
     name: str
     nodes: Ints
@@ -37,7 +37,7 @@ class AreaLoad:
 def on_area(
     name: str, load: BeamForce | DistributedLoad, scene: Scene, mesh: Mesh, force: float, length: float
 ) -> AreaLoad:
-    """A force, or one per length, on a beam; ``force`` (N) and ``length`` (m) are the units."""
+    """A force, or a force per length, on a beam; ``force`` (N) and ``length`` (m) are the units."""
     beam = mesh.names.index(load.beam)
     direction = np.array(load.direction) / np.hypot(*load.direction)
     if isinstance(load, BeamForce):
@@ -56,7 +56,7 @@ def on_area(
 
 
 def section(mesh: Mesh, beam: int, u: Array) -> tuple[Ints, Array]:
-    """Nodes (k, j) and shape functions' means over the thickness (k, j) at sections ``u`` (k,)."""
+    """Nodes (k, j) and means of their shape functions over the thickness (k, j) at sections ``u`` (k,)."""
     layers = np.unique(np.round(mesh.eta[mesh.beams == beam], 9))
     lines = [mesh.line(beam, float(eta)) for eta in layers]
     along = mesh.u[lines[0]]
@@ -64,7 +64,7 @@ def section(mesh: Mesh, beam: int, u: Array) -> tuple[Ints, Array]:
     left, right = along[2 * element], along[2 * element + 2]
     xi = (2.0 * u - left - right) / (right - left)
     shapes = np.stack([0.5 * xi * (xi - 1.0), 1.0 - xi**2, 0.5 * xi * (xi + 1.0)], axis=1)
-    # Simpson's rule over each element across is the mean of its quadratics
+    # Simpson's rule over an element's thickness is exact for its quadratics
     across = np.zeros(len(layers))
     for first in range(0, len(layers) - 1, 2):
         across[first : first + 3] += 0.5 * (layers[first + 2] - layers[first]) * np.array([1.0, 4.0, 1.0]) / 6.0

@@ -1,17 +1,17 @@
-"""A moment on a beam: a couple by a traction that goes straight over the section, and turns with it.
+"""A moment on a beam: a couple of a linear traction over the section, rotating with the section.
 
 ======  ====================================================================================
 symbol  meaning
 ======  ====================================================================================
 x_j     nodes about the section, η_j their places across, N_j its shape functions
-w_j     weights, 3/2 ∫ N_j η dη: zero in all, and Σ w_j η_j = 1
-d       Σ w_j x_j, half of the section from its line to its left as the straight line nearest to it has it
-θ       angle by which d has turned since it was drawn
+w_j     weights, 3/2 ∫ N_j η dη: zero in sum, and Σ w_j η_j = 1
+d       Σ w_j x_j, half of the section, from its line to its left, as a least-squares straight line
+θ       angle of d against the reference configuration
 M       moment, counter-clockwise
 ======  ====================================================================================
 
-The work is M θ.  Its forces f_j = M w_j S d/|d|² are the traction M η across d: without resultant, and of the moment
-Σ x_j × f_j = M however the section lies.  The second derivative is
+The work is M θ. Its forces f_j = M w_j S d/|d|² are the traction M η across d. Their resultant is zero, and their
+moment is Σ x_j × f_j = M at any orientation. The second derivative is
 
     ∂²θ/∂d² = −(n τᵀ + τ nᵀ)/|d|²,    n = d/|d|,  τ = S n.
 """
@@ -29,14 +29,13 @@ from fea_reference.solid.mesh import Mesh
 
 @dataclass(frozen=True, slots=True)
 class CouplePart:
-    """A moment of value one on a section.
+    """A unit moment on a section.
 
     Attributes:
         name: of the load.
         nodes: about the section (k,).
         weights: w (k,).
-        way: nodes (m, 2) on the right and on the left of sections from a held end to this one, by whose directions
-            full turns are counted.
+        way: nodes (m, 2) on the right and left of the sections from a held end to this section, to count full turns.
         unit: N·m.
     """
 
@@ -47,12 +46,12 @@ class CouplePart:
     unit: float
 
     def forces(self, places: Array) -> Array:
-        """Forces (k, 2) on the nodes, at ``places`` (N, 2) of all."""
+        """Forces (k, 2) on the nodes, for positions ``places`` (N, 2) of all nodes."""
         d = self.weights @ places[self.nodes]
         return np.asarray(self.weights[:, None] * across(d) / (d @ d))
 
     def tangent(self, places: Array) -> tuple[Ints, Array]:
-        """Unknowns (2k,) among the nodes' and the second derivative of θ by them (2k, 2k)."""
+        """Unknowns (2k,) among the nodes' displacements, and the second derivative (2k, 2k) of θ."""
         d = self.weights @ places[self.nodes]
         n, tau = d / np.hypot(*d), across(d) / np.hypot(*d)
         bent = -(np.outer(n, tau) + np.outer(tau, n)) / (d @ d)
@@ -60,21 +59,24 @@ class CouplePart:
         return dofs, np.asarray(np.kron(np.outer(self.weights, self.weights), bent), dtype=float)
 
     def turned(self, drawn: Array, places: Array, start: float) -> float:
-        """θ, rad, of nodes ``drawn`` and now at ``places`` (N, 2); the way's first section has turned by ``start``."""
+        """θ, rad, from positions ``drawn`` to ``places`` (N, 2).
+
+        ``start`` (rad) is the rotation of the first section of the way.
+        """
         leaning = [self._directions(x) for x in (drawn, places)]
         turns = np.angle(leaning[1] / leaning[0])
         turns = np.unwrap(np.concatenate([[start], turns]))
         return float(turns[-1])
 
     def _directions(self, places: Array) -> Array:
-        """Of the way's sections and of this one, as complex numbers (m + 1,)."""
+        """Directions (m + 1,) of the way's sections and of this section, as complex numbers."""
         apart = places[self.way[:, 1]] - places[self.way[:, 0]]
         both = np.vstack([apart, self.weights @ places[self.nodes]])
         return np.asarray(both[:, 0] + 1j * both[:, 1])
 
 
 def couple(name: str, load: BeamMoment, mesh: Mesh, unit: float, *, from_end: bool) -> CouplePart:
-    """A moment on a beam, whose end is held if ``from_end``, and else its start."""
+    """A moment on a beam held at its end if ``from_end``, else at its start."""
     beam = mesh.names.index(load.beam)
     nodes, values = section(mesh, beam, np.array([load.at]))
     weights = 3.0 * values[0] * mesh.eta[nodes[0]]

@@ -1,20 +1,21 @@
-"""Rigid bodies, and the faces of beams that are tied to them.
+"""Rigid bodies, and the end faces of beams tied to them.
 
 ======  =====================================================================
 symbol  meaning
 ======  =====================================================================
 X, φ    displacement of a body's centre and its rotation
-R(φ)    rotation by φ; S that by a right angle
-r       from the centre to what moves with the body, as drawn
+R(φ)    rotation by φ; S by a right angle
+r       arm from the centre in the reference configuration
 ψ       rotation of a face about its pin
-o       from a pinned face's middle to its nodes, as drawn
+o       from a pinned face's middle to its nodes, in the reference configuration
 u       displacement of a node
 ======  =====================================================================
 
-A welded end's whole face moves with the body, u = X + (R(φ) − I) r; a pinned end's face is rigid and turns about
-its middle, which moves with the body, u = X + (R(φ) − I) a + (R(ψ) − I) o with a from the centre to the pin.  Both are
-built into the unknowns: no node of a face has one of its own, and nothing of a tie can be violated.  The face of an end
-that is drawn apart from its point is a body of its own, which rows pin to that point once it is there.
+The whole face of a welded end moves with the body, u = X + (R(φ) − I) r. The face of a pinned end is rigid and
+rotates about its middle, and the middle moves with the body. Then u = X + (R(φ) − I) a + (R(ψ) − I) o, with a from
+the centre to the pin. The unknowns include both kinematically: nodes of a face have no unknowns, and a tie has no
+violation. The face of an end drawn apart from its point is a separate body, pinned to the point by rows after the
+assembly.
 """
 
 from collections.abc import Sequence
@@ -28,7 +29,7 @@ from cprbm_scene.statement import Scene
 
 @dataclass(frozen=True, slots=True)
 class BodyPart:
-    """A rigid body: ``centre`` (2,), ``points`` (2,) by name, and (X, Y, φ) among the unknowns if it moves."""
+    """A rigid body: ``centre`` (2,), ``points`` (2,) by name, and the unknowns (X, Y, φ) of a moving body."""
 
     name: str
     centre: Array
@@ -36,7 +37,7 @@ class BodyPart:
     dofs: Ints | None
 
     def state(self, z: Array) -> Array:
-        """(X, Y, φ), zero for the ground."""
+        """(X, Y, φ), zero for a fixed body."""
         return np.zeros(3) if self.dofs is None else np.asarray(z[self.dofs])
 
     def arm(self, point: str) -> Array:
@@ -44,22 +45,22 @@ class BodyPart:
         return np.asarray(self.points[point] - self.centre)
 
     def carried(self, arms: Array, z: Array) -> Array:
-        """Where what has ``arms`` (..., 2) is."""
+        """Positions of points with ``arms`` (..., 2)."""
         X, Y, phi = self.state(z)
         return np.asarray(self.centre + np.array([X, Y]) + turned(arms, phi))
 
     def motion(self, arms: Array, z: Array) -> Array:
-        """Displacement of what has ``arms`` (..., 2)."""
+        """Displacements of points with ``arms`` (..., 2)."""
         X, Y, phi = self.state(z)
         return np.asarray(np.array([X, Y]) + displaced(arms, phi))
 
 
 @dataclass(frozen=True, slots=True)
 class Tie:
-    """A beam's end face held at a body's point.
+    """A beam's end face joined to a body's point.
 
-    ``nodes`` (k,) from its right to its left, ``pin`` is the arm of the face's middle (2,), ``offsets`` o (k, 2);
-    ``psi`` is the unknown ψ, None of a welded face.
+    ``nodes`` (k,) run from the right to the left; ``pin`` is the arm of the face's middle (2,), ``offsets`` o (k, 2);
+    ``psi`` is the unknown ψ, or None for a welded face.
     """
 
     beam: int
@@ -72,13 +73,13 @@ class Tie:
     psi: int | None
 
 
-def is_own(tie: Tie, scene: Scene) -> bool:
-    """Whether a tie's body is the face alone, of an end that is drawn apart from its point."""
+def is_face_alone(tie: Tie, scene: Scene) -> bool:
+    """True if a tie's body is the face alone, of an end drawn apart from its point."""
     return tie.body >= len(scene.bodies)
 
 
-def stands_on(tie: Tie, bodies: Sequence[BodyPart]) -> int | None:
-    """The unknown that is the rotation of a face that can turn: ψ, or φ of a body that is the face alone."""
+def rotation_unknown(tie: Tie, bodies: Sequence[BodyPart]) -> int | None:
+    """Unknown of a face's own rotation: ψ, or φ of a body that is the face alone; None if neither exists."""
     dofs = bodies[tie.body].dofs
     return tie.psi if tie.psi is not None or dofs is None else int(dofs[2])
 
@@ -91,8 +92,8 @@ def turned(r: Array, phi: float) -> Array:
 
 def displaced(r: Array, phi: float) -> Array:
     """(R(φ) − I) r for vectors (..., 2), without cancellation."""
-    less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-    return np.stack([less * r[..., 0] - sin * r[..., 1], sin * r[..., 0] + less * r[..., 1]], axis=-1)
+    cos_minus_one, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+    return np.stack([cos_minus_one * r[..., 0] - sin * r[..., 1], sin * r[..., 0] + cos_minus_one * r[..., 1]], axis=-1)
 
 
 def across(r: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The door to meshio: what gmsh has written, as arrays."""
+"""Reader of gmsh's mesh files through meshio, imported on demand."""
 
 from contextlib import redirect_stdout
 from io import StringIO
@@ -11,7 +11,7 @@ from cprbm_scene.answer import Array
 
 
 def available() -> bool:
-    """Whether meshio can be imported."""
+    """True if meshio can be imported."""
     try:
         import meshio  # noqa: F401 - whether it loads is the question
     except ImportError:
@@ -23,7 +23,7 @@ def read_quadrilaterals(path: Path) -> tuple[Array, NDArray[np.int64]]:
     """Corners (2, k) and quadrilaterals (4, c) of a mesh in the plane."""
     import meshio
 
-    with redirect_stdout(StringIO()):  # it prints an empty line, and standard output may be a document
+    with redirect_stdout(StringIO()):  # meshio prints an empty line, and standard output may be a document
         mesh = meshio.read(path)
     return (
         np.ascontiguousarray(mesh.points[:, :2].T, dtype=np.float64),

@@ -1,4 +1,4 @@
-"""What makes a station's answer believable."""
+"""Certificate of a station's answer."""
 
 import numpy as np
 
@@ -6,8 +6,8 @@ from cprbm_scene.answer import Certificate
 from fea_reference.solid.contacts import touch
 from fea_reference.solid.curvature import smallest_curvature
 from fea_reference.solid.march import March
-from fea_reference.solid.pairs import Butt, Pair
-from fea_reference.solid.rigid import seen
+from fea_reference.solid.pairs import CornerOnShape, Pair
+from fea_reference.solid.rigid import in_body_frame
 from fea_reference.solid.skin import Skin
 from fea_reference.solid.stops import STIFFNESS
 from fea_reference.solid.supports import balance
@@ -16,15 +16,15 @@ from fea_reference.solid.system import assemble
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _YIELDING = 1e-4  # rad
-_OTHER_WAY = 5.0  # of the penetration asked: what the other edge's own points may find
+_OTHER_WAY = 5.0  # times the requested penetration: limit for the penetration seen from the other edge
 
 
 def certify(march: March) -> Certificate:
-    """Look at the state that the march has reached, summed up anew.
+    """Certificate of the current state, from a fresh assembly.
 
-    Between two beams the gap is held at places of the first one's edge; the certificate looks from the second one's
-    as well, where an end's corner would show that presses on the first one's side.  Of an end against what is rigid
-    both corners are held; it looks at the face between them.
+    Contact of two beams is integrated along the first edge. The certificate also evaluates the gap from the second
+    edge, where the corner of an end on the first's side would show. For an end against a rigid body both corners are
+    in contact; the certificate evaluates the face in between.
     """
     model, settings = march.model, march.settings
     march.system = assemble(model, march.penalties, settings.quadrature, march.values, march.system.z)
@@ -33,32 +33,32 @@ def certify(march: March) -> Certificate:
     residual = float(np.abs(system.residual[:first_row]).max()) / system.scale
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[first_row:]).max(initial=0.0))
-    penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
-    behind = max((_other_way(march, pair) for pair in march.penalties), default=0.0)
+    penetration = max((contact.penetration / contact.pair.measure for contact in system.touches), default=0.0)
+    behind = max((_penetration_from_other_side(march, pair) for pair in march.penalties), default=0.0)
     force, moment = balance(model, system, march.values)
     curvature = smallest_curvature(model, system)
     thinnest = float(system.strained.determinants.min())
     allowed = max(_BALANCE, floor * float(np.sqrt(len(model.mesh.places))))
     failures = []
     if not residual <= max(settings.residual, floor):
-        failures.append(f"the unbalanced force is {residual:.1e} of the largest")
+        failures.append(f"the unbalanced force is {residual:.1e} of the largest force")
     if not violation <= max(_VIOLATION, system.floor):
         failures.append(f"a drive, a slide or a pin is violated by {violation:.1e} of the longest beam")
     yielding = max((abs(stop.moment(system.z)) / STIFFNESS for stop in model.stops), default=0.0)
     if not yielding <= _YIELDING:
         failures.append(f"a stop yields by {yielding:.1e} rad")
     if not thinnest > 0.0:
-        failures.append(f"an element is turned inside out: det F is {thinnest:.1e}")
+        failures.append(f"an element is inverted: det F is {thinnest:.1e}")
     if not penetration <= settings.penetration:
         failures.append(
-            f"what touches overlaps by {penetration:.1e} of the thickness; {settings.penetration:.1e} was asked"
+            f"the penetration is {penetration:.1e} of the thickness; {settings.penetration:.1e} was requested"
         )
     if not behind <= _OTHER_WAY * settings.penetration:
-        failures.append(f"a beam's end presses by {behind:.1e} of the thickness into the other's side")
+        failures.append(f"a beam's end penetrates the opposite side by {behind:.1e} of the thickness")
     if not force <= allowed:
-        failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
+        failures.append(f"the forces of loads and supports have a sum of {force:.1e} of the largest")
     if not moment <= allowed:
-        failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+        failures.append(f"the moments of loads and supports have a sum of {moment:.1e} of the largest")
     if not curvature > 0.0:
         failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")
     return Certificate(
@@ -75,10 +75,10 @@ def certify(march: March) -> Certificate:
     )
 
 
-def _other_way(march: March, pair: Pair) -> float:
-    """Penetration of two edges as found from the other one, over the mean thickness."""
-    if isinstance(pair.other, Butt):
-        return _face(march, pair, pair.other)
+def _penetration_from_other_side(march: March, pair: Pair) -> float:
+    """Penetration of two edges seen from the other edge, relative to the mean thickness."""
+    if isinstance(pair.other, CornerOnShape):
+        return _face_penetration(march, pair, pair.other)
     if not isinstance(pair.other, Skin):
         return 0.0
     turned = Pair(pair.name, pair.other, pair.skin, -1, pair.measure, -pair.way)
@@ -86,10 +86,10 @@ def _other_way(march: March, pair: Pair) -> float:
     return touch(march.model, turned, 1.0, march.settings.quadrature, system.q, system.z).penetration / pair.measure
 
 
-def _face(march: March, pair: Pair, butt: Butt) -> float:
-    """Penetration of an end's face into what is rigid, over the thickness."""
+def _face_penetration(march: March, pair: Pair, butt: CornerOnShape) -> float:
+    """Penetration of an end's face into a rigid body, relative to the thickness."""
     model, system = march.model, march.system
     nodes = model.mesh.face(pair.skin.beam, 1.0 if butt.last else 0.0)
     places = (model.mesh.places + system.q.reshape(-1, 2))[nodes]
-    g, _, _ = butt.shape.measured(seen(model.bodies[pair.body], places, system.z))
+    g, _, _ = butt.shape.measured(in_body_frame(model.bodies[pair.body], places, system.z))
     return max(0.0, -float(g.min())) / pair.measure

@@ -1,21 +1,21 @@
-"""Contacts of a scene: which edges may touch what, and what they exert in a state.
+"""Evaluation of contacts in a state: gaps, forces and stiffness.
 
 ======  ===============================================================================
 symbol  meaning
 ======  ===============================================================================
-g       gap at a point of the edge that is integrated over
-ε       penalty, pressure per depth; ρ its factor on E/h of the softer of both sides
+g       gap at a point of the edge that carries the integral
+ε       penalty, pressure per depth; ρ its factor on E/h of the softer side
 p       pressure, ε max(−g, 0)
-w, ds   width, and length of the edge without stress
+w, ds   width, and undeformed length of the edge
 ======  ===============================================================================
 
-The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A rigid corner that
-juts out presses in a point of the edge, with ε over an element's length there, and so does the corner of a beam's end,
-held or free: without it the end would be held by a wedge of its edge alone, that grows and shrinks with the depth.
+The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives. A convex rigid corner
+presses in a point of the edge, with ε over an element's length. The corner of a beam's end does the same, joined or
+free. Without the latter only a wedge of the edge would support the end, whose size varies with the depth.
 
-In the course of Newton's iterations the part ε w g ∂²g of the tangent takes the g that the last step foresaw: where an
-edge has gone too deep the pressure of that state, which is far too large, has no say in what is stable.  A corner that
-was foreseen to press is held on its edge for one iteration even where it is off it by then, or it would come and go.
+During Newton's iterations the part ε w g ∂²g of the tangent uses the g predicted by the last step. The excessive
+pressure of an edge that has gone too deep then does not affect the stability. A corner with a predicted force stays
+active for an iteration even without overlap, or the active set would cycle.
 """
 
 from collections.abc import Mapping
@@ -28,17 +28,17 @@ from fea_reference.solid import facing, pricking, rigid
 from fea_reference.solid.bodies import turned
 from fea_reference.solid.edges import Broken, Corner, Graph
 from fea_reference.solid.model import Model
-from fea_reference.solid.pairs import Butt, Pair, Tip
+from fea_reference.solid.pairs import CornerOnEdge, CornerOnShape, Pair
 from fea_reference.solid.rigid import Shape
 from fea_reference.solid.skin import STENCIL, Skin
 from fea_reference.solid.zones import NOWHERE, Gap, Zones, least, zones
 
-_REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
-_FLAT = -0.9  # cosine between a beam's normal and a side's: what leans more on an edge with corners is on a corner
+_REACH = 1.0  # thicknesses, plus a few nodes: range of the gap search
+_FLAT = -0.9  # cosine between normals of a beam and a rigid side: a larger angle belongs to a corner
 
 
-Foreseen = tuple[Array, Array]
-"""Places ζ (k,), ascending, and the g ≤ 0 that is foreseen there (k,)."""
+PredictedGap = tuple[Array, Array]
+"""Places ζ (k,), ascending, and the predicted g ≤ 0 (k,) there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,16 +46,16 @@ class Touch:
     """A pair in a state.
 
     Attributes:
-        pair: which.
-        zones: where it overlaps.
+        pair: the pair.
+        zones: zones of overlap.
         zeta: ζ of the points (k,).
-        facing: ζ of the other edge's (k,); empty for what is rigid.
-        points: where they are (k, 2).
-        push: their forces on the first edge (k, 2).
-        dofs: numbers (k, 28 or 17) among the mesh's q and, behind them, the bodies' unknowns as if all moved.
-        gradient: forces on these, the energy's derivative (k, 28 or 17).
-        hessian: (k, 28 or 17, 28 or 17).
-        gap: g of the points (k,), and its ``slope`` by the numbers (k, 28 or 17).
+        facing: ζ of the opposite places on the other edge (k,); empty for a rigid body.
+        points: positions (k, 2).
+        push: contact forces on the first edge (k, 2).
+        dofs: numbers (k, 28 or 17) among the mesh's q, followed by three unknowns of every body.
+        gradient: derivative of the energy by these (k, 28 or 17).
+        hessian: second derivative (k, 28 or 17, 28 or 17).
+        gap: g of the points (k,), and the derivative ``slope`` (k, 28 or 17).
         energy: of the penalty.
     """
 
@@ -72,41 +72,41 @@ class Touch:
     slope: Array
     energy: float
 
-    def foreseen(self, step: Array) -> Foreseen:
-        """What the gap will be after a ``step`` of all that is numbered, to first order."""
+    def predicted_gap(self, step: Array) -> PredictedGap:
+        """Gaps after a ``step`` of the numbered unknowns, to first order."""
         return self.zeta, np.minimum(self.gap + (self.slope * step[self.dofs]).sum(axis=1), 0.0)
 
     @property
     def penetration(self) -> float:
-        """The largest depth."""
+        """The largest penetration."""
         return max(0.0, -self.zones.least)
 
 
 def touch(
-    model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array, foreseen: Foreseen | None = None
+    model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array, predicted: PredictedGap | None = None
 ) -> Touch:
-    """A pair in a state.
+    """Evaluation of a pair in a state.
 
     Args:
         model: the mechanism.
-        pair: which.
+        pair: the pair.
         factor: ρ of the penalty.
-        quadrature: Gauss points on each part of a zone.
+        quadrature: Gauss points on every part of a zone.
         q: displacements (2N,).
         z: unknowns.
-        foreseen: the gap for the tangent's second part; without it the state's own.
+        predicted: predicted gap for the second part of the tangent; None for the state's own.
     """
     places = model.mesh.places + q.reshape(-1, 2)
     skin, other = pair.skin, pair.other
     if isinstance(other, Corner):
-        return _pricked(model, pair, other, factor, places, z, foreseen)
-    if isinstance(other, Tip):
-        return _prodded(model, pair, other, factor, places, foreseen)
-    if isinstance(other, Butt):
-        return _butted(model, pair, other, factor, places, z, foreseen)
+        return _corner_on_edge(model, pair, other, factor, places, z, predicted)
+    if isinstance(other, CornerOnEdge):
+        return _end_corner_on_edge(model, pair, other, factor, places, predicted)
+    if isinstance(other, CornerOnShape):
+        return _end_corner_on_shape(model, pair, other, factor, places, z, predicted)
     x = places[skin.nodes]
-    found = overlap(model, pair, places, z)
-    zeta, weights = found.points(quadrature)
+    zones_found = overlap(model, pair, places, z)
+    zeta, weights = zones_found.points(quadrature)
     nodes, N, _, _ = skin.shapes(zeta)
     here = (N[:, None] @ x[nodes])[:, 0]
     _, stretch, _ = skin.curve(skin.places, zeta)
@@ -115,7 +115,7 @@ def touch(
     dofs = np.stack([2 * own, 2 * own + 1], axis=2).reshape(-1, 2 * STENCIL)
     if isinstance(other, Skin):
         outward = skin.outward(skin.curve(x, zeta)[1])
-        there = facing.gaps(other, places[other.nodes], here, outward, np.inf, _beside(pair, zeta))
+        there = facing.gaps(other, places[other.nodes], here, outward, np.inf, _own_places(pair, zeta))
         opposite = there.zeta
         g, first, second = facing.variations(other, places[other.nodes], here, N, opposite)
         g = np.where(there.faced, g, 0.0)
@@ -130,154 +130,164 @@ def touch(
         softer = skin.at(skin.stiffness, zeta)
     g = np.minimum(g, 0.0)
     bent = g
-    if foreseen is not None:
-        bent = np.interp(zeta, *foreseen, left=0.0, right=0.0) if foreseen[0].size else np.zeros_like(g)
+    if predicted is not None:
+        bent = np.interp(zeta, *predicted, left=0.0, right=0.0) if predicted[0].size else np.zeros_like(g)
     penalty = factor * softer * ds
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
     energy = 0.5 * float((penalty * g**2).sum())
-    return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
+    return Touch(pair, zones_found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
 
 
-def _pricked(
-    model: Model, pair: Pair, corner: Corner, factor: float, places: Array, z: Array, foreseen: Foreseen | None
+def _corner_on_edge(
+    model: Model, pair: Pair, corner: Corner, factor: float, places: Array, z: Array, predicted: PredictedGap | None
 ) -> Touch:
-    """A corner and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    """Evaluation of a rigid corner against an edge, with the nodes at ``places`` (N, 2)."""
     skin, body = pair.skin, model.bodies[pair.body]
     y = places[skin.nodes]
-    found = overlap(model, pair, places, z)
-    if not _holds(found.least, foreseen):
-        return _open(pair, found)
-    zeta = np.array([found.place])
+    zones_found = overlap(model, pair, places, z)
+    if not _is_active(zones_found.least, predicted):
+        return _no_contact(pair, zones_found)
+    zeta = np.array([zones_found.place])
     first, second = pricking.variations(corner, body, skin, y, zeta, z)
-    g = np.array([found.least])
-    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    g = np.array([zones_found.least])
+    bent = g if predicted is None else np.array([predicted[1].min(initial=0.0)])
     own = skin.nodes[skin.shapes(zeta)[0]]
     moved = 2 * len(places) + 3 * pair.body + np.arange(3)
     dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
-    penalty = factor * _in_a_point(skin, zeta)
+    penalty = factor * _point_stiffness(skin, zeta)
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
     here, _ = pricking.place(corner, body, z)
     energy = 0.5 * float((penalty * g**2).sum())
-    return Touch(pair, found, zeta, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
+    return Touch(pair, zones_found, zeta, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
 
 
-def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, foreseen: Foreseen | None) -> Touch:
-    """The corner of an end and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+def _end_corner_on_edge(
+    model: Model, pair: Pair, tip: CornerOnEdge, factor: float, places: Array, predicted: PredictedGap | None
+) -> Touch:
+    """Evaluation of an end's corner against an edge, with the nodes at ``places`` (N, 2)."""
     pointed, pressed = tip.roles(pair)
-    g_least, zeta = _tip_gap(pair, tip, places)
+    g_least, zeta = _end_corner_gap(pair, tip, places)
     own, y = _place_of(tip, pointed), places[pressed.nodes]
     at = np.array([own if tip.own else zeta])
-    found = _in_one_place(g_least, float(at[0]))
-    if not _holds(g_least, foreseen):
-        return _open(pair, found)
+    zones_found = _in_one_place(g_least, float(at[0]))
+    if not _is_active(g_least, predicted):
+        return _no_contact(pair, zones_found)
     there = np.array([zeta])
     numbers, N, _, _ = pointed.shapes(np.array([own]))
     here = (N[:, None] @ places[pointed.nodes][numbers])[:, 0]
     g, first, second = facing.variations(pressed, y, here, N, there)
-    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    bent = g if predicted is None else np.array([predicted[1].min(initial=0.0)])
     both = np.concatenate([pointed.nodes[numbers], pressed.nodes[pressed.shapes(there)[0]]], axis=1)
     dofs = np.stack([2 * both, 2 * both + 1], axis=2).reshape(1, -1)
-    penalty = factor * np.minimum(_in_a_point(pressed, there), _in_a_point(pointed, np.array([own])))
+    penalty = factor * np.minimum(_point_stiffness(pressed, there), _point_stiffness(pointed, np.array([own])))
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     on_corner = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
     push = on_corner if tip.own else -on_corner
     energy = 0.5 * float((penalty * g**2).sum())
     opposite = there if tip.own else np.array([own])
-    return Touch(pair, found, at, opposite, here, push, dofs, gradient, hessian, g, first, energy)
+    return Touch(pair, zones_found, at, opposite, here, push, dofs, gradient, hessian, g, first, energy)
 
 
-def _butted(
-    model: Model, pair: Pair, butt: Butt, factor: float, places: Array, z: Array, foreseen: Foreseen | None
+def _end_corner_on_shape(
+    model: Model,
+    pair: Pair,
+    butt: CornerOnShape,
+    factor: float,
+    places: Array,
+    z: Array,
+    predicted: PredictedGap | None,
 ) -> Touch:
-    """The corner of an end and what is rigid, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    """Evaluation of an end's corner against a rigid shape, with the nodes at ``places`` (N, 2)."""
     skin, body = pair.skin, model.bodies[pair.body]
-    g_least, at = _butt_gap(model, pair, butt, places, z)
-    found = _in_one_place(g_least, at)
-    if not _holds(g_least, foreseen):
-        return _open(pair, found)
+    g_least, at = _end_corner_gap_to_shape(model, pair, butt, places, z)
+    zones_found = _in_one_place(g_least, at)
+    if not _is_active(g_least, predicted):
+        return _no_contact(pair, zones_found)
     there = np.array([at])
     numbers, N, _, _ = skin.shapes(there)
     own = skin.nodes[numbers]
     here = (N[:, None] @ places[own])[:, 0]
     g, first, second = rigid.variations(butt.shape, body, here, N, z)
-    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    bent = g if predicted is None else np.array([predicted[1].min(initial=0.0)])
     moved = 2 * len(places) + 3 * pair.body + np.arange(3)
     dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
-    penalty = factor * _in_a_point(skin, there)
+    penalty = factor * _point_stiffness(skin, there)
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
     energy = 0.5 * float((penalty * g**2).sum())
-    return Touch(pair, found, there, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
+    return Touch(pair, zones_found, there, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
 
 
-def _holds(g: float, foreseen: Foreseen | None) -> bool:
-    """Whether a corner is held in this iteration: where it is within, or was foreseen to press and is near."""
-    return g < 0.0 or (np.isfinite(g) and foreseen is not None and bool((foreseen[1] < 0.0).any()))
+def _is_active(g: float, predicted: PredictedGap | None) -> bool:
+    """True if a corner is active in this iteration: overlapping, or near with a predicted force."""
+    return g < 0.0 or (np.isfinite(g) and predicted is not None and bool((predicted[1] < 0.0).any()))
 
 
-def _open(pair: Pair, found: Zones) -> Touch:
-    """A corner that presses nothing."""
+def _no_contact(pair: Pair, zones_found: Zones) -> Touch:
+    """A corner without contact."""
     none, n = np.empty(0), 2 * STENCIL
     rows, points, dofs = np.empty((0, n)), np.empty((0, 2)), np.empty((0, n), dtype=np.intp)
-    return Touch(pair, found, none, none, points, points, dofs, rows, np.empty((0, n, n)), none, rows, 0.0)
+    return Touch(pair, zones_found, none, none, points, points, dofs, rows, np.empty((0, n, n)), none, rows, 0.0)
 
 
-def _in_a_point(skin: Skin, zeta: Array) -> Array:
-    """ε w over an element's length, (k,)."""
+def _point_stiffness(skin: Skin, zeta: Array) -> Array:
+    """ε w times an element's length, (k,)."""
     element = 2.0 * np.hypot(*skin.curve(skin.places, zeta)[1].T)
     return np.asarray(skin.at(skin.stiffness, zeta) * skin.at(skin.width, zeta) * element)
 
 
-def _place_of(tip: Tip, pointed: Skin) -> float:
+def _place_of(tip: CornerOnEdge, pointed: Skin) -> float:
     return pointed.nodes.size - 1.0 if tip.last else 0.0
 
 
-def _comes_back(pair: Pair, other: Skin, x: Array, y: Array, reach: float) -> bool:
-    """Whether of two edges of one beam, with nodes ``x`` and ``y`` (N, 2), any node of one is near one of the other."""
+def _edges_near(pair: Pair, other: Skin, x: Array, y: Array, reach: float) -> bool:
+    """True if any node of one edge of a beam, at ``x`` (N, 2), is near the other edge, at ``y`` (N, 2)."""
     nodes = np.arange(float(pair.skin.nodes.size))
     outward = pair.skin.outward(pair.skin.curve(x, nodes)[1])
-    return bool(facing.nearest(other, y, x, outward, reach, _beside(pair, nodes))[1].any())
+    return bool(facing.nearest(other, y, x, outward, reach, _own_places(pair, nodes))[1].any())
 
 
 def _in_one_place(g: float, at: float) -> Zones:
     return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
 
 
-def _beside(pair: Pair, zeta: Array) -> facing.Own | None:
-    """Of an edge whose beam touches itself, where along the beam the points at ζ (k,) are."""
+def _own_places(pair: Pair, zeta: Array) -> facing.Own | None:
+    """Places along the beam of points ζ (k,) of an edge in self-contact; None otherwise."""
     return None if pair.way == 0 else facing.Own(pair.skin.at(pair.skin.u, zeta), pair.way)
 
 
-def _butt_gap(model: Model, pair: Pair, butt: Butt, places: Array, z: Array) -> tuple[float, float]:
-    """g of the corner of an end, infinite where no side has it, and its ζ."""
+def _end_corner_gap_to_shape(
+    model: Model, pair: Pair, butt: CornerOnShape, places: Array, z: Array
+) -> tuple[float, float]:
+    """g of an end's corner, infinite if no side is opposite, and its ζ."""
     at = pair.skin.nodes.size - 1 if butt.last else 0
-    there = rigid.seen(model.bodies[pair.body], places[pair.skin.nodes[[at]]], z)
+    there = rigid.in_body_frame(model.bodies[pair.body], places[pair.skin.nodes[[at]]], z)
     return float(butt.shape.measured(there)[0][0]), float(at)
 
 
-def _tip_gap(pair: Pair, tip: Tip, places: Array) -> tuple[float, float]:
-    """g of the corner of an end, infinite where nothing near faces it, and ζ of the other edge."""
+def _end_corner_gap(pair: Pair, tip: CornerOnEdge, places: Array) -> tuple[float, float]:
+    """g of an end's corner, infinite if no place is opposite, and ζ of the other edge."""
     pointed, pressed = tip.roles(pair)
     at = np.array([_place_of(tip, pointed)])
     here, slope, _ = pointed.curve(places[pointed.nodes], at)
     out = pointed.outward(slope) + (1.0 if tip.last else -1.0) * slope / np.hypot(*slope.T)[:, None]
     y = places[pressed.nodes]
     reach = _REACH * pressed.thickness + float(np.hypot(*np.diff(y, axis=0).T).max())
-    found = facing.gaps(pressed, y, here, out / np.sqrt(2.0), reach, _beside(pair, at))
-    return float(found.gap[0]), float(found.zeta[0])
+    gaps = facing.gaps(pressed, y, here, out / np.sqrt(2.0), reach, _own_places(pair, at))
+    return float(gaps.gap[0]), float(gaps.zeta[0])
 
 
 def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
-    """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
+    """Zones of overlap of a pair, with the nodes at ``places`` (N, 2)."""
     if isinstance(pair.other, Corner):
         return _in_one_place(*_corner_gap(model, pair, pair.other, places, z))
-    assert not isinstance(pair.other, Tip | Butt)  # which have no extent
+    assert not isinstance(pair.other, CornerOnEdge | CornerOnShape)  # tips and butts have no extent
     gap = _gap(model, pair, pair.other, places, z)
     return NOWHERE if gap is None else zones(gap, pair.skin.nodes.size)
 
@@ -286,10 +296,10 @@ def least_gap(model: Model, pair: Pair, places: Array, z: Array) -> float:
     """The least gap of a pair, with the nodes at ``places`` (N, 2)."""
     if isinstance(pair.other, Corner):
         return _corner_gap(model, pair, pair.other, places, z)[0]
-    if isinstance(pair.other, Tip):
-        return _tip_gap(pair, pair.other, places)[0]
-    if isinstance(pair.other, Butt):
-        return _butt_gap(model, pair, pair.other, places, z)[0]
+    if isinstance(pair.other, CornerOnEdge):
+        return _end_corner_gap(pair, pair.other, places)[0]
+    if isinstance(pair.other, CornerOnShape):
+        return _end_corner_gap_to_shape(model, pair, pair.other, places, z)[0]
     gap = _gap(model, pair, pair.other, places, z)
     return np.inf if gap is None else least(gap, pair.skin.nodes.size)
 
@@ -301,22 +311,22 @@ def _corner_gap(model: Model, pair: Pair, corner: Corner, places: Array, z: Arra
 
 
 def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array) -> Gap | None:
-    """The gap along the first edge; None where the other is far from all of it."""
+    """The gap along the first edge; None where the other is far from the whole edge."""
     skin = pair.skin
     x = places[skin.nodes]
     if isinstance(other, Skin):
         y = places[other.nodes]
-        apart = max(float(np.hypot(*np.diff(one, axis=0).T).max()) for one in (x, y))
+        apart = max(float(np.hypot(*np.diff(nodes, axis=0).T).max()) for nodes in (x, y))
         reach = _REACH * (skin.thickness + other.thickness) + apart
         low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
         if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
             return None
-        if pair.way and not _comes_back(pair, other, x, y, reach):
+        if pair.way and not _edges_near(pair, other, x, y, reach):
             return None
 
         def to_edge(zeta: Array) -> Array:
             here, slope, _ = skin.curve(x, zeta)
-            return facing.gaps(other, y, here, skin.outward(slope), reach, _beside(pair, zeta)).gap
+            return facing.gaps(other, y, here, skin.outward(slope), reach, _own_places(pair, zeta)).gap
 
         return to_edge
     flat = _FLAT if isinstance(other, Broken | Graph) else 0.0
@@ -324,18 +334,18 @@ def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array)
 
     def to_shape(zeta: Array) -> Array:
         here, slope, _ = skin.curve(x, zeta)
-        g, h, _ = other.measured(rigid.seen(body, here, z))
-        met = (turned(h, float(body.state(z)[2])) * skin.outward(slope)).sum(axis=1) < flat
-        return np.asarray(np.where(met, g, np.inf))
+        g, h, _ = other.measured(rigid.in_body_frame(body, here, z))
+        opposed = (turned(h, float(body.state(z)[2])) * skin.outward(slope)).sum(axis=1) < flat
+        return np.asarray(np.where(opposed, g, np.inf))
 
     return to_shape
 
 
 def closed(touches: tuple[Touch, ...]) -> Mapping[str, tuple[Touch, ...]]:
-    """What presses, by the name of the contact."""
-    names = dict.fromkeys(one.pair.name for one in touches)
+    """Touching pairs by the name of their contact."""
+    names = dict.fromkeys(contact.pair.name for contact in touches)
     return {
         name: pressing
         for name in names
-        if (pressing := tuple(one for one in touches if one.pair.name == name and one.zeta.size))
+        if (pressing := tuple(contact for contact in touches if contact.pair.name == name and contact.zeta.size))
     }

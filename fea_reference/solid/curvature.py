@@ -1,16 +1,16 @@
-"""The smallest curvature of the potential energy on the feasible directions.
+"""Smallest curvature of the potential energy on the feasible directions.
 
 ======  =======================================================================================
 symbol  meaning
 ======  =======================================================================================
-K       tangent, with the rows' borders
+K       tangent, bordered by the rows
 M       share of a node in the beams' lengths, one for bodies and faces, zero for multipliers
 λ       curvature, K v = λ M v
 ======  =======================================================================================
 
-M has nothing for multipliers, so the finite λ of the bordered system are those on the directions that the rows allow.
-The λ nearest to zero are found, of which one is the first that changes its sign on a way that begins at a minimum; and
-the sign of K's determinant says whether, beside one per row, an odd number of negative ones has been missed.
+M is zero for multipliers, so that the finite λ of the bordered system belong to the directions permitted by the rows.
+The λ nearest to zero are computed; along a branch from a minimum the first sign change is among them. The sign of K's
+determinant, corrected for one negative pivot per row, shows whether an odd number of negative λ was missed.
 """
 
 import numpy as np
@@ -26,36 +26,36 @@ _MODES = 3
 
 
 def smallest_curvature(model: Model, system: System) -> float:
-    """λ nearest to zero, or the least of the few nearest where one is negative; NaN where one is missed."""
+    """λ nearest to zero, or the least of the nearest if any is negative; NaN if a negative λ was missed."""
     mass = masses(model)
     if system.factors is None:
         return 0.0
     inverse = LinearOperator((model.size, model.size), matvec=system.factors.solve, dtype=float)
     start = system.carried.T @ np.resize([1.0, 0.7], system.carried.shape[0])
     try:
-        found = eigsh(
+        values = eigsh(
             system.tangent, k=_MODES, M=diags_array(mass).tocsc(), sigma=0.0, OPinv=inverse, v0=start,
             return_eigenvectors=False, tol=1e-6,
         )  # fmt: skip
     except ArpackError:
         return float("nan")
-    negative = int((found < 0.0).sum()) + len(model.rows)
-    return float(found.min()) if _odd(system.factors) == bool(negative % 2) else float("nan")
+    negative = int((values < 0.0).sum()) + len(model.rows)
+    return float(values.min()) if _odd(system.factors) == bool(negative % 2) else float("nan")
 
 
-def beside_minima(model: Model, system: System) -> bool:
-    """Whether the tangent's determinant says that the number of negative curvatures is odd: no minimum."""
+def has_odd_negative_count(model: Model, system: System) -> bool:
+    """True if the tangent's determinant shows an odd number of negative curvatures: no minimum."""
     return system.factors is not None and _odd(system.factors) != bool(len(model.rows) % 2)
 
 
 def _odd(factors: SuperLU) -> bool:
-    """Whether the determinant is negative."""
+    """True if the determinant is negative."""
     negative = int((factors.U.diagonal() < 0.0).sum())
     return bool((negative + _transpositions(factors.perm_r) + _transpositions(factors.perm_c)) % 2)
 
 
 def _transpositions(permutation: Ints) -> int:
-    """How many make up a permutation."""
+    """Number of transpositions in a permutation."""
     n = permutation.size
     cycles, _ = connected_components(coo_matrix((np.ones(n), (np.arange(n), permutation)), (n, n)))
     return n - int(cycles)

@@ -1,18 +1,18 @@
-"""Rigid edges that are straight, broken or graphs of functions, as the body sees them that carries them.
+"""Rigid edges of straight pieces or graphs of functions, in the frame of their body.
 
 ======  ========================================================================================
 symbol  meaning
 ======  ========================================================================================
 ξ       a point
-g       its distance from the nearest side, negative behind it
+g       distance from the nearest side, negative behind the side
 h, H    ∂g/∂ξ, the side's normal, and ∂²g/∂ξ² = κ/(1 + κ g) τ τᵀ
-τ, κ    tangent with the free side on its left; curvature, positive where the edge juts out
+τ, κ    tangent with the free side on its left; curvature, positive where the edge is convex
 ======  ========================================================================================
 
-A point counts for the side behind which it lies least deep.  What is rigid ends where its edge does and goes straight
-back from there, by two more sides, which go on without end but to where they meet each other, in a corner, or come to
-the edge from behind.  In front of a corner that juts out no side has the point: there the corner itself
-is held against the smooth edge of the beam, see :mod:`fea_reference.solid.pricking`.
+A point behind the edge belongs to the side at the least depth. At an end of the edge the body continues straight
+back, along two more sides. The backward sides are infinite unless they intersect, in a corner, or meet the edge from
+behind. No side is opposite to a point in front of a convex corner: the corner itself is in contact with the smooth
+edge of the beam, see :mod:`fea_reference.solid.pricking`.
 """
 
 from dataclasses import dataclass
@@ -23,14 +23,14 @@ from numpy.polynomial import Polynomial
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import FunctionContact, LineContact
 
-_SAMPLES = 257  # of a graph, from which the nearest place is sought
+_SAMPLES = 257  # points of a graph for the initial guess of the closest point
 _NEWTON_STEPS = 20
-_SAME = 1e-12  # of a length: a place on a side, or where that begins
+_SAME = 1e-12  # relative length: tolerance of a place at the beginning of a side
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corner:
-    """A corner that juts out at ``point`` (2,); ``normal`` (2,) halves it."""
+    """A convex corner at ``point`` (2,) with bisector ``normal`` (2,)."""
 
     point: Array
     normal: Array
@@ -38,7 +38,7 @@ class Corner:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Broken:
-    """Straight sides from ``first`` (s, 2) along unit vectors ``tangent`` (s, 2), ``low`` to ``high`` (s,) far."""
+    """Straight sides from ``first`` (s, 2) along ``tangent`` (s, 2), between distances ``low`` and ``high`` (s,)."""
 
     first: Array
     tangent: Array
@@ -46,22 +46,22 @@ class Broken:
     high: Array
 
     def measured(self, xi: Array) -> tuple[Array, Array, Array]:
-        """g (k,), infinite where no side has the point, h (k, 2) and H (k, 2, 2) at ξ (k, 2)."""
+        """g (k,), infinite if no side is opposite, h (k, 2) and H (k, 2, 2) at ξ (k, 2)."""
         away = xi[:, None] - self.first
         along, normal = (away * self.tangent).sum(axis=2), left(self.tangent)
         g = (away * normal).sum(axis=2)
         past = along - np.clip(along, self.low, self.high)
         nearest = np.hypot(g, past).argmin(axis=1)
         every = np.arange(len(xi))
-        found = np.where(past[every, nearest] == 0.0, g[every, nearest], np.inf)  # else a corner is nearest
-        return found, normal[nearest], np.zeros((len(xi), 2, 2))
+        gaps = np.where(past[every, nearest] == 0.0, g[every, nearest], np.inf)  # otherwise a corner is nearest
+        return gaps, normal[nearest], np.zeros((len(xi), 2, 2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Graph:
-    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with the variable in ``span``, and the ``sides`` straight back.
+    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with the variable in ``span``, and its backward ``sides``.
 
-    ``forwards`` says whether the free side is on the left of what runs along the variable.
+    ``forwards`` is True if the edge runs along the variable with the free side on its left.
     """
 
     f: Polynomial
@@ -71,7 +71,7 @@ class Graph:
     sides: Broken
 
     def measured(self, xi: Array) -> tuple[Array, Array, Array]:
-        """g (k,), infinite where no side has the point, h (k, 2) and H (k, 2, 2) at ξ (k, 2)."""
+        """g (k,), infinite if no side is opposite, h (k, 2) and H (k, 2, 2) at ξ (k, 2)."""
         v = self._nearest(xi)
         point, tangent, kappa = self.at(v)
         away, normal = xi - point, left(tangent)
@@ -88,14 +88,14 @@ class Graph:
         """Points and unit tangents (k, 2), and κ (k,), at values ``v`` (k,) of the variable."""
         slope, second = self.f.deriv(1)(v), self.f.deriv(2)(v)
         point = np.stack([v, self.f(v)], axis=1)
-        way = 1.0 if self.forwards else -1.0
-        tangent = way * np.stack([np.ones_like(v), slope], axis=1) / np.hypot(1.0, slope)[:, None]
-        # a graph that bends to the left of its way juts in; seen across, left and right are exchanged
-        kappa = (way if self.across else -way) * second / np.hypot(1.0, slope) ** 3
+        direction = 1.0 if self.forwards else -1.0
+        tangent = direction * np.stack([np.ones_like(v), slope], axis=1) / np.hypot(1.0, slope)[:, None]
+        # a graph that bends to the left of its direction is concave; across, left and right are exchanged
+        kappa = (direction if self.across else -direction) * second / np.hypot(1.0, slope) ** 3
         return (point[:, ::-1], tangent[:, ::-1], kappa) if self.across else (point, tangent, kappa)
 
     def _nearest(self, xi: Array) -> Array:
-        """The variable where the edge is nearest to ξ, (k,)."""
+        """The variable (k,) at the closest point to ξ (k, 2)."""
         low, high = self.span
         w, y = xi.T[::-1] if self.across else xi.T
         samples = np.linspace(low, high, _SAMPLES)
@@ -113,13 +113,13 @@ class Graph:
 
 
 def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tuple[Corner, ...]]:
-    """The edge of straight pieces with ``origin`` (2,) m for its own and ``unit`` m for one, and its corners."""
+    """The edge of straight pieces with its corners, dimensionless with ``origin`` (2,) (m) and length ``unit`` (m)."""
     points = (np.array(contact.points) - origin) / unit
     if contact.side == "right":
         points = points[::-1]
-    way = np.diff(points, axis=0)
-    length = np.hypot(*way.T)
-    tangent = way / length[:, None]
+    vectors = np.diff(points, axis=0)
+    length = np.hypot(*vectors.T)
+    tangent = vectors / length[:, None]
     first, low, high = points[:-1], np.zeros_like(length), length
     if contact.closed:
         return Broken(first, tangent, low, high), corners(first, np.roll(tangent, 1, axis=0), tangent)
@@ -138,7 +138,7 @@ def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tu
 
 
 def graph(contact: FunctionContact, origin: Array, unit: float) -> tuple[Graph, tuple[Corner, ...]]:
-    """The same of the graph of a function."""
+    """The edge of a function's graph with its corners, dimensionless with ``origin`` (2,) (m) and ``unit`` (m)."""
     across = contact.axis == "y"
     here, other = origin[::-1] if across else origin
     f = (Polynomial(contact.coefficients)(Polynomial([here, unit])) - other) / unit
@@ -153,9 +153,7 @@ def graph(contact: FunctionContact, origin: Array, unit: float) -> tuple[Graph, 
 
 
 def ends(points: Array, tangents: Array) -> tuple[Broken, tuple[Corner, ...]]:
-    """The sides straight back from the first and the last of ``points`` (k, 2) with ``tangents`` (2, 2) there, and the
-    corner in which they meet, if they do.
-    """
+    """Backward sides at both ends of ``points`` (k, 2) with ``tangents`` (2, 2), and their common corner, if any."""
     out, both, pieces = left(tangents), points[[0, -1]], np.diff(points, axis=0)
     far = np.full(2, np.inf)
     for i in (0, 1):
@@ -169,8 +167,9 @@ def ends(points: Array, tangents: Array) -> tuple[Broken, tuple[Corner, ...]]:
 
 
 def _crossing(place: Array, way: Array, places: Array, ways: Array) -> tuple[Array, Array]:
-    """How many ``way`` (2,) from a ``place`` (2,) other straight lines are, and how many of their ``ways`` (k, 2) from
-    their ``places`` (k, 2) that is; infinite where they are parallel.
+    """Multiples of ``way`` (2,) from ``place`` (2,), and of ``ways`` (k, 2) from ``places`` (k, 2), at the crossings.
+
+    Infinite for parallel lines.
     """
     across = way[0] * ways[:, 1] - way[1] * ways[:, 0]
     parallel = np.abs(across) <= _SAME * np.hypot(*ways.T)
@@ -181,7 +180,7 @@ def _crossing(place: Array, way: Array, places: Array, ways: Array) -> tuple[Arr
 
 
 def corners(points: Array, before: Array, behind: Array) -> tuple[Corner, ...]:
-    """The corners that jut out, of places (c, 2) between sides with tangents (c, 2) each."""
+    """The convex corners among places (c, 2) between sides with tangents (c, 2)."""
     turn = before[:, 0] * behind[:, 1] - before[:, 1] * behind[:, 0]
     half = left(before + behind)
     return tuple(

@@ -9,13 +9,13 @@ E       Green's strain, (Fᵀ F − I)/2, as (E₁₁, E₂₂, 2 E₁₂)
 C       plane stress: E/(1 − ν²) [[1, ν, 0], [ν, 1, 0], [0, 0, (1 − ν)/2]]
 S       second Piola–Kirchhoff stress, C E
 B       ∂E/∂u at a Gauss point
-σ       stress by which the tangent's second part is made: S, or what S was foreseen to be
+σ       stress in the second part of the tangent: S, or the predicted S
 ======  =====================================================================================
 
-The energy is ∫ ½ Eᵀ C E, the force ∫ Bᵀ S, the tangent ∫ Bᵀ C B + ∂N·σ·∂N.  In the course of Newton's iterations σ is
-what the last step foresaw, C (E + B δu): the residual stays exact, and a slender body that turns is not stiffened by
-the stress of a state that is none (the mixed integration points of Magisano, Leonetti, Garcea, Int. J. Numer.
-Meth. Engng 109 (2017) 1237).
+The energy is ∫ ½ Eᵀ C E, the force ∫ Bᵀ S, the tangent ∫ Bᵀ C B + ∂N·σ·∂N. During Newton's iterations σ is the
+prediction of the last step, C (E + B δu). The residual stays exact, and spurious stresses of an intermediate state do
+not stiffen a rotating slender body. Source: mixed integration points of Magisano, Leonetti, Garcea, Int. J. Numer.
+Meth. Engng 109 (2017) 1237.
 """
 
 from dataclasses import dataclass
@@ -29,10 +29,10 @@ from fea_reference.solid.mesh import Mesh
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """Where the entries of elements' matrices stand in one sparse matrix: fixed once and for all.
+    """Constant sparsity pattern of the elements' matrices.
 
-    ``index`` says for each entry of all elements (e·18·18,) which of the matrix's it adds to; ``rows`` and
-    ``pointers`` are those of a :class:`scipy.sparse.csc_matrix`.
+    ``index`` (e·18·18,) gives the matrix entry of every element entry; ``rows`` and ``pointers`` belong to a
+    :class:`scipy.sparse.csc_matrix`.
     """
 
     index: Ints
@@ -48,7 +48,7 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """What does not change: the ``mesh``, C (e, 3, 3) without units, the unknowns (e, 18), and the pattern."""
+    """Constant data: the ``mesh``, dimensionless C (e, 3, 3), the unknowns (e, 18), and the pattern."""
 
     mesh: Mesh
     elasticity: Array
@@ -61,7 +61,7 @@ class Strained:
     """Elements in a state of displacement.
 
     Attributes:
-        elements: what does not change.
+        elements: constant data.
         F: deformation gradients (e, q, 2, 2).
         strain: E (e, q, 3).
         stress: S (e, q, 3).
@@ -78,7 +78,7 @@ class Strained:
 
     @property
     def energy(self) -> float:
-        """Of all elements."""
+        """Strain energy of all elements."""
         return 0.5 * float(np.einsum("eqi,eqi,eq->", self.strain, self.stress, self.elements.mesh.weights))
 
     @property
@@ -87,8 +87,8 @@ class Strained:
         weighted = self.stress * self.elements.mesh.weights[..., None]
         return np.asarray(np.einsum("eqij,eqi->ej", self.B, weighted))
 
-    def foreseen(self, step: Array) -> Array:
-        """σ (e, q, 3): what S will be after a ``step`` of the unknowns (2N,), to first order."""
+    def predicted(self, step: Array) -> Array:
+        """σ (e, q, 3): S after a ``step`` of the displacements (2N,), to first order."""
         change = np.einsum("eqij,ej->eqi", self.B, step[self.elements.dofs])
         return np.asarray((self.strain + change) @ self.elements.elasticity)
 
@@ -107,8 +107,8 @@ class Strained:
         return local
 
 
-def built(mesh: Mesh, elasticity: Array) -> Elements:
-    """Elements of a mesh with C (beams, 3, 3) of its beams."""
+def build_elements(mesh: Mesh, elasticity: Array) -> Elements:
+    """Elements of a mesh with C (beams, 3, 3) by beam."""
     dofs = np.stack([2 * mesh.cells, 2 * mesh.cells + 1], axis=2).reshape(len(mesh.cells), 18)
     size = 2 * len(mesh.places)
     rows = np.broadcast_to(dofs[:, :, None], (len(dofs), 18, 18)).ravel()
@@ -124,7 +124,7 @@ def plane_stress(youngs_modulus: float, poisson_ratio: float) -> Array:
     return youngs_modulus / (1.0 - nu**2) * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]])
 
 
-def strained(elements: Elements, u: Array) -> Strained:
+def strain_elements(elements: Elements, u: Array) -> Strained:
     """The elements under displacements (2N,)."""
     mesh = elements.mesh
     e, q = mesh.weights.shape

@@ -1,22 +1,22 @@
-"""How far a point is from an edge of a beam, and how that varies with the nodes.
+"""Gap between a point and an edge of a beam, and its derivatives by the nodes.
 
 ======  ==================================================================
 symbol  meaning
 ======  ==================================================================
-x       the point, of the edge that is integrated over
-y(ζ)    the other edge; ζ its place nearest to x
+x       the point, on the edge that carries the integral
+y(ζ)    the other edge; ζ its closest place to x
 n, τ    normal of y out of its beam, unit tangent
-g       gap, (x − y)·n: negative where x lies within
-a       δx − δy, what both sides of a place move apart by
+g       gap, (x − y)·n: negative where x lies inside
+a       δx − δy, relative motion of both sides of a place
 J, k    |y'| and n·y''
-A       J² − g k: positive at a nearest place
+A       J² − g k: positive at a closest place
 ======  ==================================================================
 
 δg = a·n and δζ = (J a·τ + g n·δy')/A, so
 
     δ²g = −[k (a·τ)² + 2 J (a·τ)(n·δy') + g (n·δy')²]/A
 
-(Wriggers, Computational Contact Mechanics, 2nd ed., section 4.1, brought to one parameter).
+(Wriggers, Computational Contact Mechanics, 2nd ed., section 4.1, reduced to one parameter).
 """
 
 from dataclasses import dataclass
@@ -28,13 +28,13 @@ from cprbm_scene.answer import Array, Flags, Ints
 from fea_reference.solid.skin import Skin
 
 _ITERATIONS = 12
-_ARRIVED = 1e-12  # of a node's distance
-_OPPOSED = -0.2  # cosine between both outward normals: what looks another way is another side
+_ARRIVED = 1e-12  # nodes: last Newton step
+_OPPOSED = -0.2  # cosine between both outward normals: a larger one belongs to the wrong side
 
 
 @dataclass(frozen=True, slots=True)
 class Gaps:
-    """Of k points: g, ζ, and whether there is a nearest place that faces the point."""
+    """g, ζ and ``faced`` of k points, the latter True where a closest place is opposite to the point."""
 
     gap: Array
     zeta: Array
@@ -43,8 +43,9 @@ class Gaps:
 
 @dataclass(frozen=True, slots=True)
 class Own:
-    """Of points of the same beam their fractions ``u`` (k,) of its arc length, and the ``way``: −1 where partners are
-    looked for that are earlier, 1 for later ones.
+    """Points of the same beam: fractions ``u`` (k,) of the arc length, and the ``way`` of the search.
+
+    ``way`` is −1 for earlier partners and 1 for later ones.
     """
 
     u: Array
@@ -52,11 +53,10 @@ class Own:
 
 
 def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own: Own | None = None) -> Gaps:
-    """How far ``points`` (k, 2) with outward ``normals`` (k, 2) are from an edge with nodes ``x`` (N, 2).
+    """Gaps of ``points`` (k, 2) with outward ``normals`` (k, 2) from an edge with nodes ``x`` (N, 2).
 
-    Farther than ``reach`` nothing is looked for, nor deeper than half of the thickness.  Of edges of the
-    points' ``own`` beam, the places beside a point look its way, and those across from it lie a thickness behind it: by
-    that neither is near.
+    The search covers distances up to ``reach`` and depths up to half of the thickness. Places of the points' ``own``
+    beam are excluded by direction next to a point, and by their depth of a thickness across from the point.
     """
     node, near = nearest(skin, x, points, normals, reach, own)
     gap, zeta, faced = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points), dtype=bool)
@@ -78,16 +78,16 @@ def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own:
     y, slope, _ = skin.curve(x, place)
     n = skin.outward(slope)
     d = p - y
-    found = (d * n).sum(axis=1)
+    lateral = (d * n).sum(axis=1)
     beside = np.abs((d * slope).sum(axis=1)) / (slope**2).sum(axis=1)
-    facing = (beside < 1e-6) & ((n * normals[near]).sum(axis=1) < _OPPOSED) & (found > -0.5 * skin.thickness)
-    gap[near] = np.where(facing, found, np.inf)
+    facing = (beside < 1e-6) & ((n * normals[near]).sum(axis=1) < _OPPOSED) & (lateral > -0.5 * skin.thickness)
+    gap[near] = np.where(facing, lateral, np.inf)
     zeta[near], faced[near] = place, facing
     return Gaps(gap, zeta, faced)
 
 
 def nearest(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own: Own | None) -> tuple[Ints, Flags]:
-    """The node from which the nearest place is looked for (k,), and whether there is one (k,)."""
+    """Nearest node (k,) as initial guess of the closest place, and True (k,) where any node is near."""
     if own is None:
         distance, node = cKDTree(x).query(points, distance_upper_bound=reach)
         return node, np.isfinite(distance)
@@ -103,7 +103,8 @@ def nearest(skin: Skin, x: Array, points: Array, normals: Array, reach: float, o
 def variations(skin: Skin, x: Array, points: Array, shapes: Array, zeta: Array) -> tuple[Array, Array, Array]:
     """g (k,), ∂g (k, 28) and ∂²g (k, 28, 28) at ζ.
 
-    The 28 are (x, y) of the seven nodes of the point, whose shape functions ``shapes`` (k, 7) are, and of the edge's.
+    The 28 unknowns are (x, y) of the seven nodes of the point, with shape functions ``shapes`` (k, 7), and of the
+    edge.
     """
     _, N, N1, _ = skin.shapes(zeta)
     y, slope, bend = skin.curve(x, zeta)

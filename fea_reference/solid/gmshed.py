@@ -1,12 +1,12 @@
-"""The door to gmsh: a rectangle cut by its transfinite mesher."""
+"""Rectangle meshed by gmsh's transfinite mesher, imported on demand."""
 
 from pathlib import Path
 
-MISSING = "gmsh cannot be imported (the extra 'solid' brings it): a plain mapped mesh, whose nodes are the same"
+MISSING = "gmsh cannot be imported (the extra 'solid' installs gmsh): a mapped mesh with the same nodes"
 
 
 def available() -> bool:
-    """Whether gmsh can be imported: its wheel needs libraries of the desktop besides."""
+    """True if gmsh can be imported; its wheel needs desktop libraries."""
     try:
         import gmsh  # noqa: F401 - whether it loads is the question
     except (ImportError, OSError):
@@ -15,7 +15,7 @@ def available() -> bool:
 
 
 def write_rectangle(path: Path, n: int, across: int) -> None:
-    """Write [0, 1] × [−1, 1], in n × ``across`` even quadrilaterals, to a file of gmsh's."""
+    """Write the mesh of [0, 1] × [−1, 1], in n × ``across`` equal quadrilaterals, to a file of gmsh."""
     import gmsh
 
     gmsh.initialize([], readConfigFiles=False, interruptible=False)

@@ -1,23 +1,23 @@
-"""From station to station by load steps that cut and grow.
+"""Load stepping from station to station, with step control and penalty continuation.
 
 ======  ==========================================
 symbol  meaning
 ======  ==========================================
-λ       value of the stepped load or drive, no unit
+λ       dimensionless value of the stepped parameter
 z(λ)    equilibrium
 ======  ==========================================
 
-A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is cut; an
-easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
-stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
+A step starts at the last equilibrium and ends in another or is cut; an easy step is doubled. The first Newton
+iteration is the tangent predictor. (Extrapolation from two equilibria is no better: rotating parts are stretched
+along the line.) Where a contact closes, the zero of its gap in λ is sought between open states.
 
-A step that is too long may end in an equilibrium that is no minimum, beside the branch: the sign of the tangent's
-determinant tells of an odd number of negative curvatures, and the step is cut.
+A long step may end in an equilibrium on another branch that is no minimum. The sign of the tangent's determinant
+reveals an odd number of negative curvatures, and the step is cut.
 
-Where beams are slender, a penalty by their Young's modulus holds an edge to a millionth of the depth that is asked, and
-Newton's iterations find no way along which such a contact travels, opens or goes from an end's corner to the edge
-beside it.  A step that fails therefore leaves the march with looser penalties, as long as what they leave is no deeper
-than asked; at a station they are brought back to what they were.
+For slender beams a penalty relative to Young's modulus leaves a millionth of the requested penetration. Newton's
+method then fails where a contact slides, opens or moves from an end's corner to the adjacent edge. A failed step
+therefore loosens the penalties, as long as the penetration stays within the request; at a station the penalties are
+restored.
 """
 
 from dataclasses import dataclass, field, replace
@@ -25,36 +25,36 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cprbm_scene.answer import Array, Ending
-from fea_reference.solid.curvature import beside_minima
+from fea_reference.solid.curvature import has_odd_negative_count
 from fea_reference.solid.model import Model
-from fea_reference.solid.newton import Found, equilibrium
+from fea_reference.solid.newton import Solved, equilibrium
 from fea_reference.solid.pairs import Pair
-from fea_reference.solid.passing import passed
+from fea_reference.solid.passing import contact_passed_through
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble
 
-_CUTS = 10  # in a row: from an equilibrium no step is found that is a millionth of the one by which it was reached
-_EASY = 9  # iterations in which a step that may be doubled arrives
-_CUT = 0.3  # of a step that was too long
-_WHOLE = 1.01  # of a step: what is left goes with it
+_CUTS = 10  # consecutive cuts: the last step is a millionth of the step that led to the equilibrium
+_EASY = 9  # iterations of a step that may be doubled
+_CUT = 0.3  # factor of a cut
+_WHOLE_STEP = 1.01  # steps: the remaining distance is joined to the last step
 _STIFFER = 4.0
-_STIFFEST = 1e4  # of the factor at first
+_STIFFEST = 1e4  # times the initial factor
 _LOOSER = 0.1
-_LOOSEST = 1e-4  # of the factors asked
+_LOOSEST = 1e-4  # times the requested factors
 _TIGHTER = 10.0
-_GENTLY = 1.2
-_CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
-_SAME = 1e-12  # of a step: two values that are one
+_LEAST_FACTOR = 1.2
+_CLOSING = 1e-9  # lengths of the longest beam: gap of a closed contact
+_SAME = 1e-12  # steps: distance of equal values
 _LOOKS = 60
-_SECANTS = 25  # looks after which a gap that has not vanished is taken for one that leaps: the interval is halved
-_POLISHED = 1e-12  # residual, over the scale, if round-off allows that
+_SECANTS = 25  # evaluations before bisection: a gap without a zero so far is discontinuous
+_POLISHED = 1e-12  # times the scale: residual at a station, round-off permitting
 
 
-_NO_MINIMUM = "those that are, are no minima of the potential energy"
+_NO_MINIMUM = "the equilibria found are no minima of the potential energy"
 
 
 class StoppedError(Exception):
-    """The march cannot go on: with an ending and a sentence."""
+    """Load stepping cannot continue; with an ending and a sentence."""
 
     def __init__(self, ending: Ending, sentence: str) -> None:
         super().__init__(sentence)
@@ -64,50 +64,52 @@ class StoppedError(Exception):
 
 @dataclass
 class March:
-    """The state of a solve.
+    """State of load stepping.
 
     Attributes:
         model: the mechanism.
-        settings: how.
-        penalties: ρ by pair, on the way; ``asked`` are those of a station.
-        values: of all that is stepped, no units.
-        system: the equilibrium reached.
-        closing: by contact, the value (SI) at which it first closed.
-        iterations: of this station.
-        step: how far the next step may go.
+        settings: numerical settings.
+        penalties: current ρ by pair; ``requested`` are the values at stations.
+        values: dimensionless values of all stepped parameters.
+        system: the last equilibrium.
+        closing: value (SI) at the first closing, by contact.
+        iterations: Newton iterations since the last station.
+        step: limit of the next step.
     """
 
     model: Model
     settings: Settings
     penalties: dict[Pair, float]
-    asked: dict[Pair, float]
+    requested: dict[Pair, float]
     values: Array
     system: System
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
     step: float = np.inf
 
-    def look(self, values: Array, z: Array, penalties: dict[Pair, float]) -> Found:
-        """Look for an equilibrium; its iterations count.
+    def search(self, values: Array, z: Array, penalties: dict[Pair, float]) -> Solved:
+        """Equilibrium near ``z``, or the reason of a failure; counts the iterations.
 
         Raises:
-            StoppedError: the station's iterations are used up.
+            StoppedError: the station's iterations are exhausted.
         """
-        found = equilibrium(self.model, penalties, self.settings, values, z)
-        self.iterations += found.iterations
+        solved = equilibrium(self.model, penalties, self.settings, values, z)
+        self.iterations += solved.iterations
         if self.iterations > self.settings.iteration_limit:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"{self.settings.iteration_limit} iterations were not enough")
-        return found
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"no convergence within {self.settings.iteration_limit} iterations"
+            )
+        return solved
 
     def loosen(self) -> None:
-        """Make penalties looser, if they are not yet as loose as may be."""
+        """Lower all penalties, down to their least values."""
         self.penalties = {
-            pair: max(_LOOSER * rho, min(rho, _LOOSEST * self.asked[pair])) for pair, rho in self.penalties.items()
+            pair: max(_LOOSER * rho, min(rho, _LOOSEST * self.requested[pair])) for pair, rho in self.penalties.items()
         }
 
 
 def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
-    """At rest."""
+    """Initial state, undeformed and unloaded."""
     penalties = dict.fromkeys(pairs, settings.stiffness)
     values = np.zeros(len(model.stepped))
     return March(
@@ -121,10 +123,10 @@ def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
 
 
 def reach(march: March, part: int, target: float) -> None:
-    """Step the value of a number ``part`` to a ``target``, both without units.
+    """Step parameter number ``part`` to ``target``, dimensionless.
 
-    How short a step may be is no share of what a stage asks: that would end a solve by where its stations lie.  As with
-    the beams a step is cut so often in a row, and the station's iterations are counted.
+    The least step is not a share of the stage, as the end of a solution would then depend on its stations. As for
+    beams, consecutive cuts and the station's iterations are limited.
 
     Raises:
         StoppedError: no equilibrium is found.
@@ -133,145 +135,158 @@ def reach(march: March, part: int, target: float) -> None:
     why, blocked, cuts = "", "", 0
     while True:
         here = float(march.values[part])
-        left = target - here
-        if left == 0.0:
+        remaining = target - here
+        if remaining == 0.0:
             break
-        step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
+        step = remaining if abs(remaining) < _WHOLE_STEP * march.step else float(np.copysign(march.step, remaining))
         if cuts > _CUTS or here + step == here:
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
             ending = Ending.NOT_A_MINIMUM if why == _NO_MINIMUM else Ending.STEP_TOO_SMALL
             why += f"; in a longer step {blocked}" if blocked and blocked != why else ""
             raise StoppedError(ending, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}")
-        goal = target if step == left else here + step
+        goal = target if step == remaining else here + step
         values = march.values.copy()
         values[part] = goal
-        found = march.look(values, march.system.z, march.penalties)
-        through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
-        aside = found.system is not None and beside_minima(march.model, found.system)
-        if found.system is None or through or aside:
-            blocked = f"a beam passes through what it may touch in {through}" if through else blocked
-            why = blocked if through else _NO_MINIMUM if aside else found.why
+        solved = march.search(values, march.system.z, march.penalties)
+        through = (
+            ""
+            if solved.system is None
+            else contact_passed_through(march.model, march.penalties, march.system.z, solved.system.z)
+        )
+        aside = solved.system is not None and has_odd_negative_count(march.model, solved.system)
+        if solved.system is None or through or aside:
+            blocked = f"a beam passes through the opposite body in contact {through}" if through else blocked
+            why = blocked if through else _NO_MINIMUM if aside else solved.reason
             march.step, cuts = _CUT * abs(step), cuts + 1
-            if found.system is None:
+            if solved.system is None:
                 march.loosen()
             continue
         cuts = 0
         before = march.system
-        march.values, march.system = values, found.system
-        march.step *= 2.0 if found.iterations <= _EASY else 1.0
-        if march.penalties is not march.asked:
+        march.values, march.system = values, solved.system
+        march.step *= 2.0 if solved.iterations <= _EASY else 1.0
+        if march.penalties is not march.requested:
             _tighten(march)
-        _note_closings(march, part, here, before)
-    _fasten(march)
+        _record_closings(march, part, here, before)
+    _restore_penalties(march)
     _tighten(march)
     _polish(march)
 
 
-def leave_stage(march: March) -> None:
-    """What is stepped is another thing from now on: nothing is known of its way."""
+def reset_step(march: March) -> None:
+    """Forget the step limit: the next stage steps another parameter."""
     march.step = np.inf
 
 
 def _polish(march: March) -> None:
-    """Iterate on to round-off: balances sum up what is left at many nodes.  Where that fails the state stays."""
+    """Iterate to round-off, because balances sum the residuals of many nodes. On failure the state is unchanged."""
     settings = replace(march.settings, residual=_POLISHED)
-    found = equilibrium(march.model, march.penalties, settings, march.values, march.system.z)
-    march.iterations += found.iterations
-    if found.system is not None:
-        march.system = found.system
+    solved = equilibrium(march.model, march.penalties, settings, march.values, march.system.z)
+    march.iterations += solved.iterations
+    if solved.system is not None:
+        march.system = solved.system
 
 
 def _tighten(march: March) -> None:
-    """Stiffen penalties until what they leave is no deeper than asked.
+    """Raise penalties until every penetration is within the request.
 
     Raises:
-        StoppedError: that leads to no equilibrium.
+        StoppedError: no equilibrium is found.
     """
     while True:
         deep = [
-            one.pair for one in march.system.touches if one.penetration > march.settings.penetration * one.pair.measure
+            contact.pair
+            for contact in march.system.touches
+            if contact.penetration > march.settings.penetration * contact.pair.measure
         ]
         if not deep:
             return
         penalties = march.penalties | {pair: _STIFFER * march.penalties[pair] for pair in deep}
         if max(penalties.values()) > _STIFFEST * march.settings.stiffness:
-            return  # the certificate will say so
-        found = march.look(march.values, march.system.z, penalties)
-        if found.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
-        march.penalties, march.system = penalties, found.system
-        march.asked = {pair: max(rho, penalties[pair]) for pair, rho in march.asked.items()}
+            return  # the certificate reports the penetration
+        solved = march.search(march.values, march.system.z, penalties)
+        if solved.system is None:
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.reason}"
+            )
+        march.penalties, march.system = penalties, solved.system
+        march.requested = {pair: max(rho, penalties[pair]) for pair, rho in march.requested.items()}
 
 
-def _fasten(march: March) -> None:
-    """Bring penalties back to those that are asked.
+def _restore_penalties(march: March) -> None:
+    """Restore the requested penalties.
 
     Raises:
-        StoppedError: that leads to no equilibrium.
+        StoppedError: no equilibrium is found.
     """
-    if march.penalties != march.asked:
-        found = _fastened(march, march.values, march.system.z, march.penalties, march.asked)
-        if found.system is None:
-            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
-        march.system = found.system
-    march.penalties = march.asked
+    if march.penalties != march.requested:
+        solved = _with_penalties(march, march.values, march.system.z, march.penalties, march.requested)
+        if solved.system is None:
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"a contact penalty cannot be raised as requested: {solved.reason}"
+            )
+        march.system = solved.system
+    march.penalties = march.requested
 
 
-def _fastened(march: March, values: Array, z: Array, loose: dict[Pair, float], asked: dict[Pair, float]) -> Found:
-    """An equilibrium with the penalties asked, from a loose one's ``z``; by smaller factors where a large one fails."""
-    factor, found = _TIGHTER, Found(None, 0)
-    while loose != asked:
-        penalties = {pair: min(factor * rho, asked[pair]) for pair, rho in loose.items()}
-        found = march.look(values, z, penalties)
-        if found.system is not None:
-            loose, z = penalties, found.system.z
+def _with_penalties(
+    march: March, values: Array, z: Array, loose: dict[Pair, float], requested: dict[Pair, float]
+) -> Solved:
+    """Equilibrium with the ``requested`` penalties, from ``z`` with loose ones, in smaller factors if needed."""
+    factor, solved = _TIGHTER, Solved(None, 0)
+    while loose != requested:
+        penalties = {pair: min(factor * rho, requested[pair]) for pair, rho in loose.items()}
+        solved = march.search(values, z, penalties)
+        if solved.system is not None:
+            loose, z = penalties, solved.system.z
             continue
         factor = float(np.sqrt(factor))
-        if factor < _GENTLY:
+        if factor < _LEAST_FACTOR:
             break
-    return found
+    return solved
 
 
-def _note_closings(march: March, part: int, here: float, before: System) -> None:
-    """Find where the contacts have closed that are closed for the first time, since ``before``, at the value ``here``.
+def _record_closings(march: March, part: int, here: float, before: System) -> None:
+    """Record the first closings in a step from the system ``before``, at the value ``here``.
 
-    The march's penalties leave nothing deeper than is asked, or are those of a station.
+    The penetrations under the current penalties are within the request.
     """
     unit = march.model.stepped[part].unit
-    was = _least(before)
-    for name, gap in _least(march.system).items():
+    was = _least_gaps(before)
+    for name, gap in _least_gaps(march.system).items():
         if name in march.closing or not gap < 0.0:
             continue
         march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, before)) * unit
 
 
 def _closing(march: March, part: int, name: str, here: float, before: System) -> float:
-    """λ at which a contact closes, with the penalties asked unless these lead nowhere there.
+    """λ at the closing of a contact, with the requested penalties if possible, else with the current ones.
 
     Raises:
-        StoppedError: it is not found.
+        StoppedError: no closing is found.
     """
-    goal, gap = float(march.values[part]), _least(before)[name]
-    loose, asked = (
-        {pair: rho for pair, rho in rhos.items() if pair.name != name} for rhos in (march.penalties, march.asked)
+    goal, gap = float(march.values[part]), _least_gaps(before)[name]
+    loose, requested = (
+        {pair: rho for pair, rho in rhos.items() if pair.name != name} for rhos in (march.penalties, march.requested)
     )
     known = {here: before.z}
-    c = _vanishing(march, part, name, loose, known, (here, gap), 0.5 * (here + goal))
+    c = _zero_of_gap(march, part, name, loose, known, (here, gap), 0.5 * (here + goal))
     if c is None:
         unit = march.model.stepped[part].unit
         raise StoppedError(
-            Ending.STEP_TOO_SMALL, f"where {name} closes between {here * unit:.6g} and {goal * unit:.6g} is not found"
+            Ending.STEP_TOO_SMALL,
+            f"the closing of {name} between {here * unit:.6g} and {goal * unit:.6g} was not found",
         )
-    if loose == asked:
+    if loose == requested:
         return c
-    found = _fastened(march, _at(march, part, c), known[_nearest(known, c)], loose, asked)
-    if found.system is None:
+    solved = _with_penalties(march, _at(march, part, c), known[_nearest(known, c)], loose, requested)
+    if solved.system is None:
         return c
-    tight = _vanishing(march, part, name, asked, {here: before.z, c: found.system.z}, (here, gap), c)
+    tight = _zero_of_gap(march, part, name, requested, {here: before.z, c: solved.system.z}, (here, gap), c)
     return c if tight is None else tight
 
 
-def _vanishing(
+def _zero_of_gap(
     march: March,
     part: int,
     name: str,
@@ -280,39 +295,40 @@ def _vanishing(
     start: tuple[float, float],
     c: float,
 ) -> float | None:
-    """λ at which the gap of a contact vanishes: between a ``start`` (λ, gap) that is open and what overlaps.
+    """λ at the zero of a contact's gap, between an open ``start`` and an overlapping state; None without success.
 
-    What overlaps does so with the contact taken away, so that the gap is smooth there; such a state may lie far beyond
-    the open one, and is gone to from the nearest that is known, in shorter steps where one is too long.  What has gone
-    through overlaps too, by nobody knows how much.
+    The contact itself is removed for a smooth gap. An overlapping state may be far from the open state: its search
+    starts from the nearest known state, in shorter steps if necessary. After passing through, the overlap counts as
+    infinite.
 
-    The false position alone would creep: taken away, a contact may leave an overlap that is hundreds of times the gap.
-    Where one end stays twice, its gap is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174, "Illinois").
+    Plain false position would converge slowly, as the overlap without the contact may exceed the gap a hundredfold.
+    The gap of an end that stays twice is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174, "Illinois").
 
     Args:
         march: at the end of the step.
-        part: what is stepped.
-        name: the contact's.
-        without: the penalties of the others.
-        known: z by λ; what is found is added.
-        start: where the step began.
-        c: the first λ that is looked at.
+        part: number of the stepped parameter.
+        name: of the contact.
+        without: penalties of the other contacts.
+        known: z by λ, extended by all states found.
+        start: λ and gap at the beginning of the step.
+        c: first λ to evaluate.
     """
     watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)
     (a, fa), b, fb, last = start, float(march.values[part]), -np.inf, 0.0
     whole = abs(b - a)
     for look in range(_LOOKS):
         values, nearest = _at(march, part, c), _nearest(known, c)
-        found = march.look(values, known[nearest], without)
-        if found.system is None or beside_minima(march.model, found.system):
+        solved = march.search(values, known[nearest], without)
+        if solved.system is None or has_odd_negative_count(march.model, solved.system):
             c = 0.5 * (nearest + c)
             continue
-        # from so near no iteration may be called for, while what is left of the balance is felt in a gap all but closed
-        left = found.system.solve(-found.system.residual)
-        z = found.system.z if left is None else found.system.z + left
+        # so near the known state Newton's method may need no iteration, while the residual is significant for a nearly
+        # closed gap
+        correction = solved.system.solve(-solved.system.residual)
+        z = solved.system.z if correction is None else solved.system.z + correction
         watching = assemble(march.model, watched, march.settings.quadrature, values, z)
-        fc = min(one.zones.least for one in watching.touches)
-        if passed(march.model, watched, known[a], z):
+        fc = min(contact.zones.least for contact in watching.touches)
+        if contact_passed_through(march.model, watched, known[a], z):
             fc = -np.inf
         else:
             known[c] = z
@@ -333,7 +349,7 @@ def _vanishing(
 
 
 def _at(march: March, part: int, value: float) -> Array:
-    """The march's values with another one of what is stepped."""
+    """All values, with another value of the stepped parameter."""
     values = march.values.copy()
     values[part] = value
     return values
@@ -343,9 +359,9 @@ def _nearest(known: dict[float, Array], c: float) -> float:
     return min(known, key=lambda value: abs(value - c))
 
 
-def _least(system: System) -> dict[str, float]:
+def _least_gaps(system: System) -> dict[str, float]:
     """The least gap of every contact."""
-    found: dict[str, float] = {}
-    for one in system.touches:
-        found[one.pair.name] = min(found.get(one.pair.name, np.inf), one.zones.least)
-    return found
+    gaps: dict[str, float] = {}
+    for contact in system.touches:
+        gaps[contact.pair.name] = min(gaps.get(contact.pair.name, np.inf), contact.zones.least)
+    return gaps

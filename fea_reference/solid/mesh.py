@@ -1,15 +1,15 @@
-"""All beams' areas in quadrilaterals of second order, mapped from rectangles.
+"""Mesh of all beams' areas: quadrilaterals of second order, mapped from rectangles.
 
 ======  ================================================================
 symbol  meaning
 ======  ================================================================
 u, η    fraction of a beam's arc length, and place across in [−1, 1]
-X       a node's place without stress, over the longest beam
+X       reference position of a node, over the longest beam
 N_a     shape function of an element's node a, biquadratic
 ======  ================================================================
 
-The rectangle of beam b is [2b, 2b + 1] × [−1, 1], n elements along and m across with nine nodes each; every node is
-moved to where the area has its u and η, and scikit-fem gives ∂N_a/∂X and the weights at 3 × 3 Gauss points.
+The rectangle of beam b is [2b, 2b + 1] × [−1, 1], with n elements along, m across, and nine nodes per element. Every
+node is moved to the area's point at its u and η. scikit-fem provides ∂N_a/∂X and the weights at 3 × 3 Gauss points.
 """
 
 from collections.abc import Callable, Mapping
@@ -23,10 +23,10 @@ from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import Scene
 from fea_reference.solid.areas import fractions, points
 
-_ON = 1e-9  # of η or u: on an edge
+_ON = 1e-9  # of η or u: tolerance for a node on an edge
 
 Rectangle = Callable[[Array, int], tuple[Array, NDArray[np.int64]]]
-"""Corners (2, k) and quadrilaterals (4, c) of a rectangle [0, 1] × [−1, 1], of places along and a number across."""
+"""Corners (2, k) and quadrilaterals (4, c) of the rectangle [0, 1] × [−1, 1], from places along and a number across."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +38,12 @@ class Mesh:
         places: X (N, 2).
         u: fractions of the arc length (N,).
         eta: places across (N,).
-        beams: number of each node's beam (N,).
-        cells: numbers of each element's nodes (e, 9).
+        beams: beam number of every node (N,).
+        cells: node numbers of every element (e, 9).
         gradients: ∂N_a/∂X (e, 9 Gauss points, 9 nodes, 2).
-        weights: areas of the Gauss points (e, 9), with the width there over the largest.
-        owners: number of each element's beam (e,).
-        origin: what places are counted from (2,), m.
+        weights: areas of the Gauss points (e, 9), times the local width over the largest.
+        owners: beam number of every element (e,).
+        origin: origin of the places (2,), m.
     """
 
     names: tuple[str, ...]
@@ -59,13 +59,13 @@ class Mesh:
 
     def line(self, beam: int, eta: float) -> Ints:
         """The nodes of a beam at a place across, from its start to its end."""
-        found = np.flatnonzero((self.beams == beam) & (np.abs(self.eta - eta) < _ON))
-        return np.asarray(found[np.argsort(self.u[found])])
+        nodes = np.flatnonzero((self.beams == beam) & (np.abs(self.eta - eta) < _ON))
+        return np.asarray(nodes[np.argsort(self.u[nodes])])
 
     def face(self, beam: int, u: float) -> Ints:
-        """The nodes of a section of a beam's, from its right to its left."""
-        found = np.flatnonzero((self.beams == beam) & (np.abs(self.u - u) < _ON))
-        return np.asarray(found[np.argsort(self.eta[found])])
+        """The nodes of a beam's section, from its right to its left."""
+        nodes = np.flatnonzero((self.beams == beam) & (np.abs(self.u - u) < _ON))
+        return np.asarray(nodes[np.argsort(self.eta[nodes])])
 
 
 def plain_rectangle(along: Array, across: int) -> tuple[Array, NDArray[np.int64]]:
@@ -74,17 +74,17 @@ def plain_rectangle(along: Array, across: int) -> tuple[Array, NDArray[np.int64]
     return np.ascontiguousarray(mesh.p), np.ascontiguousarray(mesh.t)
 
 
-def meshed(
+def build_mesh(
     scene: Scene, counts: Mapping[str, int], across: int, length: float, rectangle: Rectangle = plain_rectangle
 ) -> Mesh:
-    """Mesh a scene's beams.
+    """Mesh of a scene's beams.
 
     Args:
-        scene: whose beams they are.
-        counts: elements along each.
-        across: elements across all.
+        scene: with the beams.
+        counts: elements along every beam.
+        across: elements across all beams.
         length: of the longest beam, m.
-        rectangle: how a rectangle is cut.
+        rectangle: mesher of a rectangle.
     """
     corners, quadrilaterals, first = [], [], 0
     for number, (name, beam) in enumerate(scene.beams.items()):
@@ -100,7 +100,7 @@ def meshed(
         own = number == i
         places[own] = points(beam, u[own], eta[own]) / length
     origin = places[0].copy()
-    places -= origin  # so that places far from the scene's origin are not rounded
+    places -= origin  # avoids round-off of places far from the scene's origin
     basis = CellBasis(MeshQuad2(np.ascontiguousarray(places.T), flat.t), ElementQuad2(), intorder=5)
     cells = np.asarray(basis.element_dofs.T, dtype=np.intp)
     gradients = np.stack([np.asarray(shape[0].grad) for shape in basis.basis])  # (9, 2, e, q)

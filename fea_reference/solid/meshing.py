@@ -1,4 +1,4 @@
-"""Who cuts the rectangles: gmsh where it is there, else NumPy; both give the same nodes."""
+"""Choice of the mesher for rectangles: gmsh if available, else NumPy, with equal nodes."""
 
 import tempfile
 from pathlib import Path
@@ -11,15 +11,15 @@ from fea_reference.solid import carried, gmshed
 from fea_reference.solid.mesh import Rectangle, plain_rectangle
 
 
-def chosen() -> tuple[Rectangle, str]:
-    """How rectangles are cut, and a line that says so."""
+def choose_mesher() -> tuple[Rectangle, str]:
+    """The mesher of rectangles, and a note for the answer."""
     if gmshed.available() and carried.available():
         return by_gmsh, "meshed by gmsh, structured along the beams"
     return plain_rectangle, gmshed.MISSING
 
 
 def by_gmsh(along: Array, across: int) -> tuple[Array, NDArray[np.int64]]:
-    """A rectangle by gmsh, see :data:`~fea_reference.solid.mesh.Rectangle`: even, and then moved to ``along``."""
+    """A rectangle by gmsh, see :data:`~fea_reference.solid.mesh.Rectangle`: equal elements, then moved to ``along``."""
     n = along.size - 1
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "rectangle.msh"

@@ -1,8 +1,8 @@
-"""A scene made discrete as a solid, without units.
+"""Discretisation of a scene as a dimensionless solid.
 
-Lengths are over the longest beam's L, forces over the largest E w t³/12 over L², so moments and energies over the same
-over L.  The mesh has displacements q (2N,), node by node.  The unknowns z are, in this order: the q of all nodes that
-no tie holds; ψ of every pinned face; (X, Y, φ) of every body that moves; a multiplier per row.
+Lengths are relative to the longest beam's L, forces to the largest E w t³/12 over L², moments and energies to the
+same over L. The mesh has displacements q (2N,), node by node. The unknowns z are, in this order: the q of all untied
+nodes; ψ of every pinned face; (X, Y, φ) of every moving body; a multiplier per row.
 """
 
 from collections.abc import Sequence
@@ -28,17 +28,17 @@ from cprbm_scene.statement import (
 from fea_reference.solid.areas import longest
 from fea_reference.solid.beam_loads import AreaLoad, on_area
 from fea_reference.solid.beam_moments import CouplePart, couple
-from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_own, turned
-from fea_reference.solid.elements import Elements, Strained, built, plane_stress, strained
-from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
-from fea_reference.solid.rows import Row, brought, rows_of
+from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_face_alone, turned
+from fea_reference.solid.elements import Elements, Strained, build_elements, plane_stress, strain_elements
+from fea_reference.solid.mesh import Mesh, Rectangle, build_mesh, plain_rectangle
+from fea_reference.solid.rows import Row, assembly_rows, rows_of
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.stops import StopPart, stops_of
 
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """The scene's own: ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m), ``width`` (m)."""
+    """Dimensional units: ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m), ``width`` (m)."""
 
     length: float
     bending: float
@@ -47,12 +47,12 @@ class Units:
 
     @property
     def force(self) -> float:
-        """N."""
+        """Unit of force, N."""
         return self.bending / self.length**2
 
     @property
     def moment(self) -> float:
-        """N·m, and J."""
+        """Unit of moment and energy, N·m or J."""
         return self.bending / self.length
 
 
@@ -69,7 +69,7 @@ class LoadPart:
 
 @dataclass(frozen=True, slots=True)
 class DrivePart:
-    """What steps a drive's row; ``unit`` is its value's (m or rad)."""
+    """Stepped parameter of a drive's row, in ``unit`` (m or rad)."""
 
     name: str
     unit: float
@@ -77,7 +77,7 @@ class DrivePart:
 
 @dataclass(frozen=True, slots=True)
 class SharePart:
-    """The share of the assembly's moments: ``moments`` (k,) of value one by the unknowns ``dofs`` (k,), rotations."""
+    """The share of the assembly's unit ``moments`` (k,) on the rotations ``dofs`` (k,)."""
 
     dofs: Ints
     moments: Array
@@ -86,14 +86,14 @@ class SharePart:
 
 
 WAY = DrivePart("share of the way of ends to their points", 1.0)
-"""What steps the rows of ends that are assembled."""
+"""Stepped parameter of the rows of assembled ends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """Everything the mechanics needs to know of a scene.
+    """Discretised scene.
 
-    ``free`` are the q (f,) that are unknowns, in the order of these; ``lengths`` the beams' arc lengths.
+    ``free`` are the numbers (f,) of the unknown q, in order; ``lengths`` the beams' arc lengths.
     """
 
     units: Units
@@ -111,12 +111,12 @@ class Model:
 
     @property
     def apart(self) -> tuple[Row, ...]:
-        """The rows of ends that are drawn apart from their points, the last ones."""
+        """The rows of ends drawn apart from their points, the last rows."""
         return tuple(row for row in self.rows if row.point)
 
     @property
     def stepped(self) -> tuple[LoadPart | AreaLoad | CouplePart | SharePart | DrivePart, ...]:
-        """What has a value that is stepped, in the order of the values: loads, drives."""
+        """The stepped parameters in the order of the values: loads, then drives."""
         return (*self.loads, *self.drives)
 
     def displacements(self, z: Array) -> Array:
@@ -133,7 +133,7 @@ class Model:
         return q
 
     def chain(self, z: Array) -> csr_matrix:
-        """∂q/∂z (2N, size), by which forces and stiffnesses go from nodes to unknowns."""
+        """∂q/∂z (2N, size), the chain rule from nodes to unknowns."""
         rows, columns, values = [self.free], [np.arange(self.free.size)], [np.ones(self.free.size)]
 
         def enter(nodes: Ints, dof: int, slope: Array) -> None:
@@ -156,21 +156,21 @@ class Model:
         return csr_matrix(entries, (2 * len(self.mesh.places), self.size))
 
     def turning(self, forces: Array, z: Array) -> list[tuple[int, float]]:
-        """Unknowns and Σ f·∂²q for ``forces`` (2N,): what ties that turn add to the tangent, all on its diagonal."""
-        found = []
+        """Unknowns and Σ f·∂²q for ``forces`` (2N,): the diagonal terms of rotating ties in the tangent."""
+        terms = []
         f = forces.reshape(-1, 2)
         for tie in self.ties:
             dofs = self.bodies[tie.body].dofs
             arms = tie.pin + (tie.offsets if tie.psi is None else np.zeros_like(tie.offsets))
             if dofs is not None:
-                found.append((int(dofs[2]), -float((f[tie.nodes] * turned(arms, z[dofs[2]])).sum())))
+                terms.append((int(dofs[2]), -float((f[tie.nodes] * turned(arms, z[dofs[2]])).sum())))
             if tie.psi is not None:
-                found.append((tie.psi, -float((f[tie.nodes] * turned(tie.offsets, z[tie.psi])).sum())))
-        return found
+                terms.append((tie.psi, -float((f[tie.nodes] * turned(tie.offsets, z[tie.psi])).sum())))
+        return terms
 
-    def strained(self, q: Array) -> Strained:
+    def strain_elements(self, q: Array) -> Strained:
         """The elements under displacements (2N,)."""
-        return strained(self.elements, q)
+        return strain_elements(self.elements, q)
 
 
 def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectangle) -> Model:
@@ -181,7 +181,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     """
     counts = settings.elements_of(scene.beams)
     length = longest(scene)
-    mesh = meshed(scene, counts, settings.across, length, rectangle)
+    mesh = build_mesh(scene, counts, settings.across, length, rectangle)
     beams = list(scene.beams.values())
     widest = max(float(beam.width_at(beam.knots).max()) for beam in beams)
     stiffest = max(
@@ -192,20 +192,20 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     )
     units = Units(length, stiffest, mesh.origin, widest)
     materials = [scene.materials[beam.material] for beam in beams]
-    elasticity = np.stack([plane_stress(one.youngs_modulus, one.poisson_ratio) for one in materials])
-    # E w per length of the mesh, whose weights have w over the widest
-    elements = built(mesh, elasticity * widest * units.length / units.force)
+    elasticity = np.stack([plane_stress(material.youngs_modulus, material.poisson_ratio) for material in materials])
+    # E w per length of the mesh, whose weights contain w over the largest
+    elements = build_elements(mesh, elasticity * widest * units.length / units.force)
 
     number = {name: i for i, name in enumerate(scene.bodies)}
-    held = np.zeros(len(mesh.places), dtype=bool)
+    tied = np.zeros(len(mesh.places), dtype=bool)
     joints = []
     for i, beam in enumerate(beams):
         for which, end, u in (("start", beam.start, 0.0), ("end", beam.end, 1.0)):
             if not isinstance(end, FreeEnd):
                 nodes = mesh.face(i, u)
-                held[nodes] = True
+                tied[nodes] = True
                 joints.append((i, which, end, nodes))
-    free = np.flatnonzero(~np.repeat(held, 2))
+    free = np.flatnonzero(~np.repeat(tied, 2))
     size = free.size
     psis: list[int | None] = []
     for i, which, end, _ in joints:
@@ -224,13 +224,13 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     for (i, which, end, nodes), psi in zip(joints, psis, strict=True):
         b = number[scene.body_of(end.point)]
         middle = 0.5 * (mesh.places[nodes[0]] + mesh.places[nodes[-1]])
-        if which == "end" and is_apart(scene, beams[i]):  # its face is a body of its own until it is where it belongs
+        if which == "end" and is_apart(scene, beams[i]):  # the end face is a separate body until the assembly
             b = len(bodies)
             bodies.append(BodyPart(f"end of {mesh.names[i]}", middle, {}, np.arange(size, size + 3)))
             size += 3
         ties.append(Tie(i, which, end.point, b, nodes, middle - bodies[b].centre, mesh.places[nodes] - middle, psi))
     rows = rows_of(scene, tuple(bodies), size)
-    rows += brought(scene, ties, tuple(bodies), number, size + len(rows), WAY.name)
+    rows += assembly_rows(scene, ties, tuple(bodies), number, size + len(rows), WAY.name)
     return Model(
         units,
         mesh,
@@ -256,28 +256,28 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
 def _loads(
     scene: Scene, mesh: Mesh, bodies: Sequence[BodyPart], number: dict[str, int], units: Units
 ) -> list[LoadPart | AreaLoad | CouplePart]:
-    found: list[LoadPart | AreaLoad | CouplePart] = []
+    loads: list[LoadPart | AreaLoad | CouplePart] = []
     for name, load in scene.loads.items():
         match load:
             case Moment():
-                found.append(LoadPart(name, number[load.body], np.zeros(2), None, units.moment))
+                loads.append(LoadPart(name, number[load.body], np.zeros(2), None, units.moment))
             case Force():
                 b = number[scene.body_of(load.point)]
                 direction = np.array(load.direction) / np.hypot(*load.direction)
-                found.append(LoadPart(name, b, bodies[b].arm(load.point), direction, units.force))
+                loads.append(LoadPart(name, b, bodies[b].arm(load.point), direction, units.force))
             case BeamForce() | DistributedLoad():
-                found.append(on_area(name, load, scene, mesh, units.force, units.length))
+                loads.append(on_area(name, load, scene, mesh, units.force, units.length))
             case BeamMoment():
                 from_end = isinstance(scene.beams[load.beam].start, FreeEnd)
-                found.append(couple(name, load, mesh, units.moment, from_end=from_end))
-    return found
+                loads.append(couple(name, load, mesh, units.moment, from_end=from_end))
+    return loads
 
 
 def _shares(scene: Scene, mesh: Mesh, ties: Sequence[Tie], bodies: Sequence[BodyPart], units: Units) -> list[SharePart]:
     """The share of the assembly's moments, if there is an assembly."""
     if scene.assembly is None:
         return []
-    on = [tie for tie in ties if is_own(tie, scene) and mesh.names[tie.beam] in scene.assembly.moments]
+    on = [tie for tie in ties if is_face_alone(tie, scene) and mesh.names[tie.beam] in scene.assembly.moments]
     dofs = [int(dofs[2]) for tie in on if (dofs := bodies[tie.body].dofs) is not None]
     moments = [scene.assembly.moments[mesh.names[tie.beam]] / units.moment for tie in on]
     return [SharePart(np.array(dofs, dtype=np.intp), np.array(moments))]

@@ -1,8 +1,9 @@
-"""What may touch what: the pairs of a scene's contacts.
+"""Contact pairs of a scene.
 
-A pair is every edge of the first beam with every one of the second, or with what is rigid; of a beam that touches
-itself every edge with every one, seen from the place that is later along it.  Beside these are what presses in a point:
-rigid corners that jut out into an edge, and the corners of beams' ends into edges and what is rigid.
+A contact of two beams pairs every edge of the first with every edge of the second; a contact with a rigid body pairs
+every edge with the body's shape. In self-contact every edge is paired with every edge, seen from the later place
+along the beam. Point contacts are added: convex rigid corners against edges, and corners of beams' ends against edges
+and rigid shapes.
 """
 
 from __future__ import annotations
@@ -26,36 +27,35 @@ from fea_reference.solid import edges
 from fea_reference.solid.bodies import BodyPart
 from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
-from fea_reference.solid.rigid import Half, Round, Shape, seen
+from fea_reference.solid.rigid import Half, Round, Shape, in_body_frame
 from fea_reference.solid.skin import Skin
 
 RigidContacts = CircleContact | HalfPlaneContact | LineContact | FunctionContact
 
-_INSIDE = 1e-9  # of the longest beam: an end whose corner is drawn so deep inside what it may touch begins there
+_INSIDE = 1e-9  # lengths of the longest beam: depth above which an end's corner starts inside the opposite body
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pair:
-    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number, or a
-    corner of one; or a corner of an end and what that may touch.
+    """An edge that carries the contact integral, and an opposite edge, shape or corner on body number ``body``.
 
-    ``name`` is the contact's; ``measure`` the mean thickness.  Of two edges of one beam, ``way`` says whether places
-    are looked for that are earlier along it, −1, or later, 1; of different beams it is 0.
+    Also the corner of an end with its opposite. ``name`` is the contact's; ``measure`` the mean thickness. In
+    self-contact ``way`` is −1 to search earlier places along the beam and 1 for later ones; for different beams 0.
     """
 
     name: str
     skin: Skin
-    other: Skin | Shape | Corner | Tip | Butt
+    other: Skin | Shape | Corner | CornerOnEdge | CornerOnShape
     body: int
     measure: float
     way: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Tip:
-    """The corner of an end: the ``last`` or first place of an edge, that may press into the other one of a pair.
+class CornerOnEdge:
+    """The corner of an end: the ``last`` or first place of an edge, opposite to the other edge of a pair.
 
-    It is the pair's own edge if ``own``, and ``skin`` is what it may press into; else it is ``skin`` that has it.
+    With ``own`` the corner belongs to the pair's edge and ``skin`` is the opposite edge, else conversely.
     """
 
     skin: Skin
@@ -63,13 +63,13 @@ class Tip:
     last: bool
 
     def roles(self, pair: Pair) -> tuple[Skin, Skin]:
-        """The edge that has the corner, and what it presses into."""
+        """The edge with the corner, and the opposite edge."""
         return (pair.skin, self.skin) if self.own else (self.skin, pair.skin)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Butt:
-    """The corner of an end, the ``last`` or first place of the pair's edge, that may press on a rigid ``shape``."""
+class CornerOnShape:
+    """The corner of an end, the ``last`` or first place of the pair's edge, against a rigid ``shape``."""
 
     shape: Shape
     last: bool
@@ -77,48 +77,50 @@ class Butt:
 
 def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
     """The pairs of a scene's contacts."""
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     number = {body.name: i for i, body in enumerate(model.bodies)}
     for name, contact in scene.contacts.items():
         match contact:
             case BeamContact():
-                one, other = (_skins(scene, model, beam) for beam in contact.between)
-                for a, b in product(one, other):
+                first, second = (_skins(scene, model, beam) for beam in contact.between)
+                for a, b in product(first, second):
                     measure = 0.5 * (a.thickness + b.thickness)
-                    found.append(Pair(name, a, b, -1, measure))
-                    found += [
-                        Pair(name, a, Tip(b, own, last), -1, measure)
+                    pairs.append(Pair(name, a, b, -1, measure))
+                    pairs += [
+                        Pair(name, a, CornerOnEdge(b, own, last), -1, measure)
                         for own, last in product((True, False), (False, True))
                     ]
             case SelfContact():
                 own_edges = _skins(scene, model, contact.beam)
                 for a, b in product(own_edges, own_edges):
-                    found.append(Pair(name, a, b, -1, a.thickness, -1))
-                    found += [
-                        Pair(name, a, Tip(b, own=True, last=last), -1, a.thickness, way)
+                    pairs.append(Pair(name, a, b, -1, a.thickness, -1))
+                    pairs += [
+                        Pair(name, a, CornerOnEdge(b, own=True, last=last), -1, a.thickness, way)
                         for last, way in ((False, 1), (True, -1))
                     ]
             case CircleContact() | HalfPlaneContact() | LineContact() | FunctionContact():
                 body = model.bodies[number[contact.body]]
                 for shape, skin in product(_shapes(contact, body, model), _skins(scene, model, contact.beam)):
-                    found.append(Pair(name, skin, shape, number[contact.body], skin.thickness))
+                    pairs.append(Pair(name, skin, shape, number[contact.body], skin.thickness))
                     if not isinstance(shape, Corner):
-                        found += [
+                        pairs += [
                             Pair(name, skin, butt, number[contact.body], skin.thickness)
-                            for butt in (Butt(shape, last=False), Butt(shape, last=True))
-                            if _comes_from_outside(scene, contact, model, skin, butt)
+                            for butt in (CornerOnShape(shape, last=False), CornerOnShape(shape, last=True))
+                            if _may_touch_from_outside(scene, contact, model, skin, butt)
                         ]
-    return tuple(found)
+    return tuple(pairs)
 
 
-def _comes_from_outside(scene: Scene, contact: RigidContacts, model: Model, skin: Skin, butt: Butt) -> bool:
-    """Whether an end's corner may come to press on a shape: not one that is part of its body or is drawn within it."""
+def _may_touch_from_outside(
+    scene: Scene, contact: RigidContacts, model: Model, skin: Skin, butt: CornerOnShape
+) -> bool:
+    """True if an end's corner may touch a shape: neither part of the shape's body nor inside the shape at rest."""
     beam = scene.beams[contact.beam]
     end = beam.end if butt.last else beam.start
     if isinstance(end, WeldedEnd) and scene.body_of(end.point) == contact.body:
         return False
     body = next(body for body in model.bodies if body.name == contact.body)
-    there = seen(body, skin.places[[-1 if butt.last else 0]], np.zeros(model.size))
+    there = in_body_frame(body, skin.places[[-1 if butt.last else 0]], np.zeros(model.size))
     return float(butt.shape.measured(there)[0][0]) > -_INSIDE
 
 
@@ -130,7 +132,7 @@ def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
         nodes = mesh.line(i, side)
         places = mesh.places[nodes]
         apart = np.hypot(*np.diff(places, axis=0).T)
-        h = apart[0::2] + apart[1::2]  # of elements
+        h = apart[0::2] + apart[1::2]  # lengths of elements
         u = mesh.u[nodes]
         skins.append(
             Skin(
@@ -148,7 +150,7 @@ def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
 
 
 def _shapes(contact: RigidContacts, body: BodyPart, model: Model) -> tuple[Shape | Corner, ...]:
-    """What is rigid, as its body sees it from its centre."""
+    """Shapes and corners of a rigid contact, in the frame of the body with the origin at its centre."""
     unit = model.units.length
     origin = model.units.origin + body.centre * unit
     match contact:

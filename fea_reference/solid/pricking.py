@@ -1,17 +1,17 @@
-"""A rigid corner against the smooth edge of a beam: the gap, and how it varies with the edge and the corner's body.
+"""A rigid corner against the smooth edge of a beam: the gap and its derivatives by the edge and the corner's body.
 
 ======  ==========================================================================
 symbol  meaning
 ======  ==========================================================================
-x       the corner; r from its body's centre to it, X and φ the body's motion
-y(ζ)    the edge; ζ its place nearest to x
+x       the corner; r its arm from the body's centre, X and φ the body's motion
+y(ζ)    the edge; ζ its closest place to x
 n, τ    normal of y out of its beam, unit tangent
 g       gap, (x − y)·n
 a       δx − δy, with δx = δX + S R r δφ
 J, k, A |y'|, n·y'', J² − g k
 ======  ==========================================================================
 
-As of two edges (:mod:`fea_reference.solid.facing`), with what the corner's way on its circle adds:
+As for two edges (:mod:`fea_reference.solid.facing`), plus the term of the corner's circular motion:
 
     δ²g = −[k (a·τ)² + 2 J (a·τ)(n·δy') + g (n·δy')²]/A − n·R r δφ²
 """
@@ -26,23 +26,23 @@ from fea_reference.solid.skin import STENCIL, Skin
 
 
 def place(corner: Corner, body: BodyPart, z: Array) -> tuple[Array, Array]:
-    """Where a corner is, (1, 2), and which way it points, (1, 2)."""
+    """Position (1, 2) and direction (1, 2) of a corner."""
     phi = float(body.state(z)[2])
     return body.carried(corner.point, z)[None], turned(corner.normal, phi)[None]
 
 
 def gap(corner: Corner, body: BodyPart, skin: Skin, y: Array, reach: float, z: Array) -> tuple[float, float]:
-    """g, infinite where no place of an edge with nodes ``y`` (N, 2) faces the corner within ``reach``, and ζ."""
+    """g, infinite without an opposite place within ``reach`` on an edge with nodes ``y`` (N, 2), and ζ."""
     x, normal = place(corner, body, z)
-    found = facing.gaps(skin, y, x, normal, reach)
-    return float(found.gap[0]), float(found.zeta[0])
+    gaps = facing.gaps(skin, y, x, normal, reach)
+    return float(gaps.gap[0]), float(gaps.zeta[0])
 
 
 def variations(corner: Corner, body: BodyPart, skin: Skin, y: Array, zeta: Array, z: Array) -> tuple[Array, Array]:
     """∂g (1, 17) and ∂²g (1, 17, 17) at ζ (1,); the 17 are (x, y) of the edge's seven nodes there, and (X, Y, φ)."""
     x, _ = place(corner, body, z)
     _, N, N1, _ = skin.shapes(zeta)
-    point, slope, bend = (one[0] for one in skin.curve(y, zeta))
+    point, slope, bend = (vectors[0] for vectors in skin.curve(y, zeta))
     n = skin.outward(slope[None])[0]
     J = float(np.hypot(*slope))
     tangent = slope / J

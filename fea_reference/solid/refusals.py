@@ -1,4 +1,4 @@
-"""What a scene may ask of the solid: the rest is refused before anything is solved."""
+"""Features of a scene that the solid lacks; such a scene is refused before the solution."""
 
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.solving import refuse as refuse_requirements
@@ -7,22 +7,24 @@ from fea_reference.solid.areas import too_curved
 
 
 def refuse(scene: Scene) -> None:
-    """See that the solid offers all that a scene asks.
+    """Check that the solid offers all features of a scene.
 
     Raises:
-        SceneError: it does not.
+        SceneError: a feature is missing.
     """
     refuse_requirements(scene, "the solid")
     mistakes = too_curved(scene)
     for name, contact in scene.contacts.items():
         if not contact.thick:
-            allowed = "for the solid, edges, thick = true: what has a thickness would overlap before its line touches"
-            mistakes.append(Mistake(f"contacts.{name}", "lines that touch", allowed))
+            allowed = "for the solid, edges, thick = true: thick beams overlap before their lines touch"
+            mistakes.append(Mistake(f"contacts.{name}", "contact of neutral lines", allowed))
     for stage in scene.stages:
         if stage.beyond is not None:
             mistakes.append(
                 Mistake(
-                    f"stages.{stage.name}.beyond", repr(stage.beyond), "for the solid, none: it follows no branches"
+                    f"stages.{stage.name}.beyond",
+                    repr(stage.beyond),
+                    "for the solid, none: the solid follows no branches",
                 )
             )
     if mistakes:

@@ -1,10 +1,10 @@
-"""Rigid shapes that move with a body, and how far points are from them.
+"""Rigid shapes on a body, and their distance from points.
 
 ======  =====================================================================
 symbol  meaning
 ======  =====================================================================
 x       the point; c, X, φ a body's centre, displacement and rotation
-ξ       the point as the body sees it, R(φ)ᵀ (x − c − X)
+ξ       the point in the frame of the body, R(φ)ᵀ (x − c − X)
 g(ξ)    gap, positive outside; h = ∂g/∂ξ (a unit vector), H = ∂²g/∂ξ²
 S       rotation by a right angle
 ======  =====================================================================
@@ -26,7 +26,7 @@ _S = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """A circle of a ``radius`` about ``centre`` (2,), as the body sees it."""
+    """A circle of ``radius`` about ``centre`` (2,), in the frame of the body."""
 
     centre: Array
     radius: float
@@ -42,7 +42,7 @@ class Round:
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """A half-plane through ``point`` (2,) with ``normal`` (2,) out of it, as the body sees it."""
+    """A half-plane through ``point`` (2,) with outward ``normal`` (2,), in the frame of the body."""
 
     point: Array
     normal: Array
@@ -55,7 +55,7 @@ class Half:
 Shape = Round | Half | Broken | Graph
 
 
-def seen(body: BodyPart, points: Array, z: Array) -> Array:
+def in_body_frame(body: BodyPart, points: Array, z: Array) -> Array:
     """ξ (k, 2) of points (k, 2)."""
     X, Y, phi = body.state(z)
     return turned(points - body.centre - np.array([X, Y]), -phi)
@@ -64,10 +64,10 @@ def seen(body: BodyPart, points: Array, z: Array) -> Array:
 def variations(shape: Shape, body: BodyPart, points: Array, shapes: Array, z: Array) -> tuple[Array, Array, Array]:
     """g (k,), ∂g (k, 17) and ∂²g (k, 17, 17).
 
-    The 17 are (x, y) of the point's seven nodes, whose shape functions ``shapes`` (k, 7) are, and (X, Y, φ).
+    The 17 unknowns are (x, y) of the point's seven nodes, with shape functions ``shapes`` (k, 7), and (X, Y, φ).
     """
     k, n = len(points), 2 * shapes.shape[1]
-    xi = seen(body, points, z)
+    xi = in_body_frame(body, points, z)
     g, h, H = shape.measured(xi)
     phi = float(body.state(z)[2])
     Rt = np.array([[np.cos(phi), np.sin(phi)], [-np.sin(phi), np.cos(phi)]])

@@ -1,10 +1,10 @@
-"""What bodies must do beside: pins between them, slides, pivots and drives, each a row with a multiplier.
+"""Constraints of bodies: pins between bodies, slides, pivots and drives, all as rows with a multiplier.
 
 ======  ===================================================================
 symbol  meaning
 ======  ===================================================================
-d, r    direction and arm of a part on one body; without d it is φ
-c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value; of an end that is assembled, + apart − value × way
+d, r    direction and arm of a share on one body; without d the share is φ
+c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value; for an assembled end + apart − value × way
 μ       multiplier, added to the energy as μ c
 ======  ===================================================================
 """
@@ -16,12 +16,12 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import BodyPin, DisplacementDrive, Drive, Scene, SlidingBody, TurningBody
-from fea_reference.solid.bodies import BodyPart, Tie, across, is_own, turned
+from fea_reference.solid.bodies import BodyPart, Tie, across, is_face_alone, turned
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """A body's part in a row: ``direction`` d (2,) or None, ``arm`` r (2,)."""
+    """A body's share in a row: ``direction`` d (2,) or None, ``arm`` r (2,)."""
 
     body: int
     direction: Array | None
@@ -30,10 +30,10 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row: of what (``name``), its ``shares``, its multiplier's place, and the ``drive`` that steps it.
+    """A row: ``name`` of its origin, ``shares``, number of the multiplier, and the ``drive`` that steps the row.
 
-    Of an end that is assembled ``point`` is where it goes, ``apart`` how far it is drawn from there along the row, and
-    ``way`` what is left of that where it was caught.
+    For an assembled end ``point`` is the target and ``apart`` the initial distance from the target along the row.
+    ``way`` is the distance at the start of the motion.
     """
 
     name: str
@@ -46,18 +46,18 @@ class Row:
 
     def violation(self, bodies: tuple[BodyPart, ...], z: Array) -> float:
         """c for the value zero."""
-        found = self.apart
+        value = self.apart
         for share in self.shares:
             body = bodies[share.body]
-            found += (
+            value += (
                 float(body.state(z)[2])
                 if share.direction is None
                 else float(share.direction @ body.motion(share.arm, z))
             )
-        return found
+        return value
 
     def gradient(self, bodies: tuple[BodyPart, ...], z: Array) -> tuple[Ints, Array]:
-        """Unknowns (k,) and ∂c by them (k,)."""
+        """Unknowns (k,) and the derivatives (k,) of c."""
         dofs, slopes = [np.empty(0, dtype=np.intp)], [np.empty(0)]
         for share in self.shares:
             body = bodies[share.body]
@@ -82,52 +82,52 @@ class Row:
 
 
 def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row, ...]:
-    """A scene's rows, whose multipliers begin at the unknown ``first``."""
+    """A scene's rows, with multipliers from the unknown ``first`` on."""
     number = {body.name: i for i, body in enumerate(bodies)}
-    found: list[tuple[str, tuple[Share, ...], str | None]] = []
+    parts: list[tuple[str, tuple[Share, ...], str | None]] = []
     for name, both in scene.pins.items():
-        found += _pinned(name, both, scene, bodies, number)
+        parts += _pin_rows(name, both, scene, bodies, number)
     for name, body in scene.bodies.items():
         i = number[name]
         if isinstance(body, SlidingBody):
             along = np.array(body.along) / np.hypot(*body.along)
             pin = np.zeros(2) if body.pin is None else bodies[i].arm(body.pin)
-            found.append((name, (Share(i, across(along), pin),), None))
+            parts.append((name, (Share(i, across(along), pin),), None))
             if body.pin is None:
-                found.append((name, (Share(i, None, pin),), None))
+                parts.append((name, (Share(i, None, pin),), None))
         elif isinstance(body, TurningBody):
-            found += [(name, (Share(i, direction, bodies[i].arm(body.about)),), None) for direction in np.eye(2)]
-    found += [(name, (_driven(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
-    return tuple(Row(name, shares, first + i, drive) for i, (name, shares, drive) in enumerate(found))
+            parts += [(name, (Share(i, direction, bodies[i].arm(body.about)),), None) for direction in np.eye(2)]
+    parts += [(name, (_drive_share(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
+    return tuple(Row(name, shares, first + i, drive) for i, (name, shares, drive) in enumerate(parts))
 
 
-def _pinned(
+def _pin_rows(
     name: str, both: BodyPin, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]
 ) -> list[tuple[str, tuple[Share, ...], str | None]]:
-    one, other = (number[scene.body_of(point)] for point in both.points)
-    arms = bodies[one].arm(both.points[0]), bodies[other].arm(both.points[1])
-    return [(name, (Share(one, e, arms[0]), Share(other, -e, arms[1])), None) for e in np.eye(2)]
+    first, second = (number[scene.body_of(point)] for point in both.points)
+    arms = bodies[first].arm(both.points[0]), bodies[second].arm(both.points[1])
+    return [(name, (Share(first, e, arms[0]), Share(second, -e, arms[1])), None) for e in np.eye(2)]
 
 
-def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]) -> Share:
+def _drive_share(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]) -> Share:
     if isinstance(drive, DisplacementDrive):
         i = number[scene.body_of(drive.point)]
         return Share(i, np.array(drive.direction) / np.hypot(*drive.direction), bodies[i].arm(drive.point))
     return Share(number[drive.body], None, np.zeros(2))
 
 
-def brought(
+def assembly_rows(
     scene: Scene, ties: Sequence[Tie], bodies: tuple[BodyPart, ...], number: Mapping[str, int], first: int, drive: str
 ) -> tuple[Row, ...]:
-    """Pins of ends that are drawn apart from their points, stepped by a ``drive``; multipliers begin at ``first``."""
-    found: list[Row] = []
+    """Pins of ends drawn apart from their points, stepped by ``drive``, with multipliers from ``first`` on."""
+    rows: list[Row] = []
     for tie in ties:
-        if not is_own(tie, scene):
+        if not is_face_alone(tie, scene):
             continue
         other = number[scene.body_of(tie.point)]
         arm = bodies[other].arm(tie.point)
         apart = bodies[tie.body].centre - bodies[other].centre - arm
         for e in np.eye(2):
             shares = (Share(tie.body, e, np.zeros(2)), Share(other, -e, arm))
-            found.append(Row(tie.point, shares, first + len(found), drive, tie.point, float(e @ apart)))
-    return tuple(found)
+            rows.append(Row(tie.point, shares, first + len(rows), drive, tie.point, float(e @ apart)))
+    return tuple(rows)

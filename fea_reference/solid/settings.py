@@ -1,4 +1,4 @@
-"""The numerical choices of the solid."""
+"""Numerical settings of the solid."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from dataclasses import dataclass, replace
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.mistakes import Mistake, SceneError
 
-_LEAST = 3  # along a beam, so that every edge is a smooth curve, see fea_reference.solid.skin
+_LEAST = 3  # elements along a beam for a smooth edge, see fea_reference.solid.skin
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How finely a scene is solved as a solid.
+    """Mesh and numerical tolerances of a solution as a solid.
 
     Attributes:
-        elements: along each beam, one number for all or one for each name.
+        elements: along a beam, equal for all or by name.
         across: elements across the thickness.
-        stiffness: of a contact's penalty, over E and the length of an element along the beam.
-        penetration: largest depth of overlap that the penalty may leave, over the mean thickness; it is stiffened
-            until that holds.
-        quadrature: Gauss points on each part of a contact zone between two nodes.
-        residual: unbalanced generalised force at which an equilibrium is accepted, over the largest.
-        newton_limit: iterations after which a load step is cut.
-        iteration_limit: iterations, of all load steps, after which a station is given up.
+        stiffness: of a contact's penalty, relative to E over the length of an element along the beam.
+        penetration: largest penetration of the penalty, relative to the mean thickness; the penalty is raised as
+            needed.
+        quadrature: Gauss points on every part of a contact zone between two nodes.
+        residual: unbalanced generalised force of an accepted equilibrium, relative to the largest.
+        newton_limit: iterations before a load step is cut.
+        iteration_limit: iterations, over all load steps, before a station is given up.
 
     Raises:
         SceneError: a value is out of its bounds.
@@ -72,24 +72,24 @@ class Settings:
         """The number of elements along every beam.
 
         Raises:
-            SceneError: ``elements`` names a beam that is not there, or leaves one out.
+            SceneError: ``elements`` names an unknown beam or omits a beam.
         """
         names = list(beams)
         if not isinstance(self.elements, Mapping):
             return dict.fromkeys(names, self.elements)
         if set(self.elements) != set(names):
-            found = ", ".join(f"{name}={n}" for name, n in self.elements.items())
-            raise SceneError([Mistake("settings.elements", found, "one number for each of " + ", ".join(names))])
+            counts = ", ".join(f"{name}={n}" for name, n in self.elements.items())
+            raise SceneError([Mistake("settings.elements", counts, "one number for each of " + ", ".join(names))])
         return {name: self.elements[name] for name in names}
 
     def finer(self) -> Settings:
-        """The same with twice the elements, along and across."""
+        """The settings with twice the elements, along and across."""
         if isinstance(self.elements, Mapping):
             return replace(self, elements={name: 2 * n for name, n in self.elements.items()}, across=2 * self.across)
         return replace(self, elements=2 * self.elements, across=2 * self.across)
 
     def plain(self) -> dict[str, object]:
-        """The choices as plain values."""
+        """The settings as plain values."""
         elements = self.elements
         return {
             "elements": dict(elements) if isinstance(elements, Mapping) else elements,

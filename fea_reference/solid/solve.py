@@ -1,4 +1,4 @@
-"""A scene in, an answer out."""
+"""Solution of a scene as a plane solid."""
 
 import logging
 import time
@@ -10,8 +10,8 @@ from cprbm_scene.statement import Scene, Stage
 from fea_reference.solid import answer_sheet
 from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify
-from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
-from fea_reference.solid.meshing import chosen
+from fea_reference.solid.march import March, StoppedError, begin, reach, reset_step
+from fea_reference.solid.meshing import choose_mesher
 from fea_reference.solid.model import build
 from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
@@ -25,9 +25,9 @@ _DEFAULT = Settings()
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A scene made ready: the ``march`` stands at the undeformed state, and goes its way once.
+    """A discretised scene with single-use load-stepping state, initially unloaded.
 
-    ``seconds`` is how long that took; ``notes`` say how it is meshed.
+    ``seconds`` is the preparation time (s); ``notes`` describe the mesher.
     """
 
     scene: Scene
@@ -37,7 +37,7 @@ class Prepared:
     notes: tuple[str, ...]
 
     def answer(self) -> Answer:
-        """March, and hand back what :func:`answer` does.
+        """Answer of the scene, see :func:`answer`.
 
         Raises:
             SceneError: a stop forbids the assembly.
@@ -49,11 +49,11 @@ class Prepared:
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
         with one_thread():
             try:
-                known: dict[str, str] = {}  # contacts that have closed, with what was stepped
+                known: dict[str, str] = {}  # closed contacts, with the parameter stepped at their closing
                 assemble_ends(scene, march)
                 for stage in scene.stages:
-                    leave_stage(march)
-                    part = [one.name for one in march.model.stepped].index(stage.steps)
+                    reset_step(march)
+                    part = [part.name for part in march.model.stepped].index(stage.steps)
                     unit = march.model.stepped[part].unit
                     for station in stage.stations:
                         reach(march, part, station / unit)
@@ -85,16 +85,16 @@ class Prepared:
 
 
 def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
-    """Make a scene ready without solving anything.
+    """Prepare a scene without solving.
 
-    The arguments are those of :func:`answer`.
+    Arguments as for :func:`answer`.
 
     Raises:
-        SceneError: the settings do not fit the scene, or the solid does not offer what it asks.
+        SceneError: the settings do not fit the scene, or the scene needs a feature that the solid lacks.
     """
     began = time.perf_counter()
     refuse(scene)
-    rectangle, how = chosen()
+    rectangle, how = choose_mesher()
     model = build(scene, settings, rectangle)
     march = begin(model, settings, pairs_of(scene, model))
     return Prepared(scene, settings, march, time.perf_counter() - began, (how,))
@@ -103,22 +103,22 @@ def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
 def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """Solve a scene as a solid.
 
-    An answer that ends early holds the stations reached before.
+    An answer that ends early has the stations reached before.
 
     Raises:
-        SceneError: the settings do not fit the scene, the solid does not offer what it asks, or a stop forbids the
-            assembly.
+        SceneError: the settings do not fit the scene, the scene needs a feature that the solid lacks, or a stop
+            forbids the assembly.
     """
     return prepared(scene, settings).answer()
 
 
 def _certified(scene: Scene, march: March, stage: Stage, station: float, closed: dict[str, str]) -> StationAnswer:
-    """The station's answer, if its certificate holds.
+    """The station's answer with its certificate.
 
-    ``closed`` is what was stepped as a contact closed: its closing is no value of anything else.
+    ``closed`` is the stepped parameter of every closing; a closing value belongs to this parameter only.
 
     Raises:
-        StoppedError: it does not.
+        StoppedError: the certificate fails.
     """
     certificate = certify(march)
     if not certificate.holds:

@@ -3,14 +3,14 @@
 ======  ===================================================================================
 symbol  meaning
 ======  ===================================================================================
-ε       strain along a face, its stretch less one: what a gauge glued to it reads
+ε       strain along a face, its stretch minus one, as read by a strain gauge
 ±       left and right face
 bending E (ε₋ − ε₊)/2: positive where the tangent turns counter-clockwise, as in a beam
 membrane  E (ε₋ + ε₊)/2
 ======  ===================================================================================
 
-An element's strain is best at two Gauss points along it (Barlow, Int. J. Numer. Meth. Engng 10 (1976) 243); in between
-a cubic spline goes through these.
+An element's strain is most accurate at two Gauss points along the element (Barlow, Int. J. Numer. Meth. Engng 10
+(1976) 243); a cubic spline interpolates in between.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ _GAUSS = 1.0 / np.sqrt(3.0)
 
 
 def bending_and_membrane(model: Model, q: Array, beam: int, youngs_modulus: float, u: Array) -> tuple[Array, Array]:
-    """Both parts at fractions ``u`` (k,) of a beam's arc length, in the unit of ``youngs_modulus``."""
+    """Bending and membrane stress (k,) at fractions ``u`` (k,) of the arc length, in the unit of ``youngs_modulus``."""
     right, left = (_face_strain(model, q, beam, side, u) for side in (-1.0, 1.0))
     return 0.5 * youngs_modulus * (right - left), 0.5 * youngs_modulus * (right + left)
 

@@ -1,4 +1,4 @@
-"""What the ground, rows and loads do to what they hold."""
+"""Reactions of fixed bodies, rows and loads."""
 
 import numpy as np
 
@@ -11,11 +11,11 @@ from fea_reference.solid.rows import Row
 from fea_reference.solid.system import System
 
 Wrench = tuple[Array, float]
-"""A force (2,) and a moment, about a point that is said."""
+"""A force (2,) and a moment about a stated point."""
 
 
-def support(model: Model, system: System, tie: Tie) -> Wrench:
-    """Force and moment of a tie's body on the face, about the face's middle; of a pinned one no moment."""
+def tie_reaction(model: Model, system: System, tie: Tie) -> Wrench:
+    """Force and moment of a tie's body on the face, about the face's middle; a pinned face has no moment."""
     forces = system.nodal.reshape(-1, 2)[tie.nodes]
     if tie.psi is not None:
         return forces.sum(axis=0), 0.0
@@ -24,25 +24,28 @@ def support(model: Model, system: System, tie: Tie) -> Wrench:
 
 
 def place(model: Model, system: System, tie: Tie) -> Array:
-    """Where a tied face's middle is (2,)."""
+    """Position of a tied face's middle (2,)."""
     return model.bodies[tie.body].carried(tie.pin, system.z)
 
 
-def held(row: Row, system: System) -> Wrench:
-    """Force and moment of a row on its first body, at the arm's point: the multiplier, turned round."""
+def row_reaction(row: Row, system: System) -> Wrench:
+    """Force and moment of a row on its first body, at the arm's point: the negative multiplier."""
     pull = -float(system.z[row.multiplier])
     direction = row.shares[0].direction
     return (np.zeros(2), pull) if direction is None else (pull * direction, 0.0)
 
 
-def grounded(model: Model, row: Row) -> int | None:
-    """Which of a row's shares is on a body that moves, if the others are on the ground; None if no share is."""
+def moving_share(model: Model, row: Row) -> int | None:
+    """Number of a row's only share on a moving body, with the others on fixed bodies; None otherwise."""
     moving = [i for i, share in enumerate(row.shares) if model.bodies[share.body].dofs is not None]
     return moving[0] if len(moving) == 1 else None
 
 
 def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads, supports, rows and contacts with what is fixed, over the largest."""
+    """|ΣF| and |ΣM| of loads, supports, rows and contacts with fixed bodies, relative to the largest.
+
+    Moments are about the origin.
+    """
     z = system.z
     forces: list[Array] = []
     moments: list[float] = []
@@ -53,10 +56,10 @@ def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
 
     for tie in model.ties:
         if model.bodies[tie.body].dofs is None:
-            force, moment = support(model, system, tie)
+            force, moment = tie_reaction(model, system, tie)
             enter(force, place(model, system, tie), moment)
     for row in model.rows:
-        i = grounded(model, row)
+        i = moving_share(model, row)
         if i is not None:
             share, pull = row.shares[i], -float(z[row.multiplier])
             body = model.bodies[share.body]
@@ -78,10 +81,10 @@ def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
         else:
             enter(value * part.direction, model.bodies[part.body].carried(part.arm, z))
     moments += [stop.moment(z) for stop in model.stops if model.bodies[stop.body].dofs is None]
-    for one in system.touches:
-        if one.zeta.size and one.pair.body >= 0 and model.bodies[one.pair.body].dofs is None:
-            forces.append(one.push.sum(axis=0))
-            moments.append(float(cross(one.points, one.push).sum()))
+    for contact in system.touches:
+        if contact.zeta.size and contact.pair.body >= 0 and model.bodies[contact.pair.body].dofs is None:
+            forces.append(contact.push.sum(axis=0))
+            moments.append(float(cross(contact.points, contact.push).sum()))
     largest = max([float(np.hypot(*force)) for force in forces] + [abs(moment) for moment in moments], default=0.0)
     scale = max(largest, system.floor / 1e-9)
     return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale

@@ -1,7 +1,7 @@
-"""The whole mechanism's unbalanced forces and their tangent.
+"""Residual and tangent of the whole mechanism.
 
-The residual is the derivative by all unknowns of Π(z) + Σ μ c(z), elements, contacts and loads in Π, and the tangent
-its second derivative.  Forces are summed up over the mesh's displacements q, and go from these to the unknowns by
+The residual is the derivative of Π(z) + Σ μ c(z) by all unknowns, with elements, contacts and loads in Π; the tangent
+is the second derivative. Forces are assembled over the mesh's displacements q, and transformed to the unknowns by
 ∂q/∂z.
 """
 
@@ -17,39 +17,40 @@ from cprbm_scene.answer import Array
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.bodies import across, turned
-from fea_reference.solid.contacts import Foreseen, Touch, least_gap, touch
+from fea_reference.solid.contacts import PredictedGap, Touch, least_gap, touch
 from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import LoadPart, Model, SharePart
 from fea_reference.solid.pairs import Pair
 from fea_reference.solid.stops import STIFFNESS
 
 _ROUND_OFF = 8.0  # measured
-_NOTHING = 10.0  # floors: a force below this is round-off itself
+_NOTHING = 10.0  # floors: smaller forces are round-off
 
 
 @dataclass(frozen=True, slots=True)
-class Outlook:
-    """What a step foresees: ``stress`` (e, q, 3) of the elements and the ``gaps`` of the pairs."""
+class Prediction:
+    """Prediction of a step: ``stress`` (e, q, 3) of the elements and ``gaps`` of the pairs."""
 
     stress: Array
-    gaps: Mapping[Pair, Foreseen]
+    gaps: Mapping[Pair, PredictedGap]
 
 
 @dataclass(frozen=True)
 class System:
-    """A state ``z`` and what follows from it.
+    """Residual and tangent in a state ``z``.
 
     Attributes:
         z: the unknowns.
         q: displacements of the nodes (2N,).
-        residual: unbalanced generalised forces and violations of rows (size,).
-        tangent: its derivative (size, size).
-        carried: ∂q/∂z, and behind it the bodies' (X, Y, φ) by the unknowns, as if all moved.
-        nodal: forces on the nodes that elements, contacts and loads leave (2N,): of held ones the tie's, turned round.
+        residual: unbalanced generalised forces and constraint violations (size,).
+        tangent: derivative of the residual (size, size).
+        carried: ∂q/∂z, extended by the three unknowns of every body.
+        nodal: unbalanced forces (2N,) of elements, contacts and loads on the nodes; on tied nodes the tie's negative
+            force.
         strained: the elements.
         touches: the pairs.
-        scale: the largest force that balances; where there is none but round-off, one.
-        floor: round-off of the residual: the largest stiffness of a node times the spacing of numbers at the largest
+        scale: the largest force in equilibrium; one if all forces are round-off.
+        floor: round-off of the residual: the largest nodal stiffness times the spacing of numbers at the largest
             displacement.
     """
 
@@ -65,19 +66,19 @@ class System:
     floor: float
 
     def solve(self, right: Array) -> Array | None:
-        """What the tangent makes ``right`` (size,) of; None where it is singular or as good as that."""
+        """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
         solution = None if self.factors is None else self.factors.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
 
-    def outlook(self, step: Array) -> Outlook:
-        """What a ``step`` of the unknowns leads to, to first order."""
+    def prediction(self, step: Array) -> Prediction:
+        """Prediction for a ``step`` of the unknowns, to first order."""
         moved = self.carried @ step
-        stress = self.strained.foreseen(moved)
-        return Outlook(stress, {one.pair: one.foreseen(moved) for one in self.touches})
+        stress = self.strained.predicted(moved)
+        return Prediction(stress, {contact.pair: contact.predicted_gap(moved) for contact in self.touches})
 
     @cached_property
     def factors(self) -> SuperLU | None:
-        """The tangent, factored."""
+        """LU factors of the tangent; None for a singular tangent."""
         try:
             return splu(
                 self.tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True}
@@ -92,37 +93,37 @@ def assemble(
     quadrature: int,
     values: Array,
     z: Array,
-    foreseen: Outlook | None = None,
+    predicted: Prediction | None = None,
 ) -> System:
-    """Sum everything up.
+    """Residual and tangent in state ``z``.
 
     Args:
         model: the mechanism.
-        penalties: the pairs that may touch, and each one's factor ρ.
+        penalties: factor ρ of every pair.
         quadrature: Gauss points per part of a zone.
-        values: of all that is stepped, in the model's order, without units.
+        values: dimensionless values of all stepped parameters, in the model's order.
         z: the unknowns.
-        foreseen: by the last step, for the tangent's second part; without it the state's own.
+        predicted: prediction of the last step for the second part of the tangent; None for the state's own.
     """
     q = model.displacements(z)
-    elements = model.strained(q)
+    elements = model.strain_elements(q)
     touches = tuple(
-        touch(model, pair, factor, quadrature, q, z, None if foreseen is None else foreseen.gaps[pair])
+        touch(model, pair, factor, quadrature, q, z, None if predicted is None else predicted.gaps[pair])
         for pair, factor in penalties.items()
     )
     local = elements.gradient
     m, nodes = len(model.bodies), q.size
     places = model.mesh.places + q.reshape(-1, 2)
-    # the mesh's q and behind them three of every body, as if all moved
+    # the mesh's q, followed by three unknowns of every body
     forces: Array = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m).astype(float)
     rows, columns, entries = [], [], []
-    for one in touches:
-        if one.zeta.size:
-            forces += np.bincount(one.dofs.ravel(), one.gradient.ravel(), nodes + 3 * m)
-            wide = np.broadcast_to(one.dofs[:, :, None], one.hessian.shape)
+    for contact in touches:
+        if contact.zeta.size:
+            forces += np.bincount(contact.dofs.ravel(), contact.gradient.ravel(), nodes + 3 * m)
+            wide = np.broadcast_to(contact.dofs[:, :, None], contact.hessian.shape)
             rows.append(wide.ravel())
             columns.append(wide.transpose(0, 2, 1).ravel())
-            entries.append(one.hessian.ravel())
+            entries.append(contact.hessian.ravel())
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
         if isinstance(part, AreaLoad | CouplePart):
             acting = part.forces if isinstance(part, AreaLoad) else part.forces(places)
@@ -135,7 +136,7 @@ def assemble(
             entries.append(-value * bent.ravel())
     carried = vstack([model.chain(z), _moving(model)], format="csr")
     stiffness = model.elements.pattern.matrix(
-        elements.hessian(elements.stress if foreseen is None else foreseen.stress)
+        elements.hessian(elements.stress if predicted is None else predicted.stress)
     )
     stiffness = block_diag((stiffness, csc_matrix((3 * m, 3 * m))), format="csc")
     if rows:
@@ -178,7 +179,7 @@ def assemble(
         more.append(value)
     extra = coo_matrix((more, (more_rows, more_columns)), (model.size, model.size))
     tangent = (carried.T @ stiffness @ carried + extra).tocsc()
-    pressing = [float(np.abs(one.gradient).max()) for one in touches if one.zeta.size]
+    pressing = [float(np.abs(contact.gradient).max()) for contact in touches if contact.zeta.size]
     largest = max(
         float(np.abs(local).max()), float(np.abs(values[: len(model.loads)]).max(initial=0.0)), *pressing, 0.0
     )
@@ -189,13 +190,13 @@ def assemble(
 
 
 def deepest(model: Model, pairs: Iterable[Pair], z: Array) -> float:
-    """The largest depth of overlap in a state, over the mean thickness."""
+    """The largest penetration in a state, relative to the mean thickness."""
     places = model.mesh.places + model.displacements(z).reshape(-1, 2)
     return max((-least_gap(model, pair, places, z) / pair.measure for pair in pairs), default=0.0)
 
 
 def load_direction(model: Model, part: LoadPart | SharePart, z: Array) -> Array:
-    """What a load of value one that acts on bodies adds to the right-hand side (size,)."""
+    """Right-hand side (size,) of a unit load on bodies."""
     f = np.zeros(model.size)
     if isinstance(part, SharePart):
         f[part.dofs] = part.moments
@@ -211,8 +212,8 @@ def load_direction(model: Model, part: LoadPart | SharePart, z: Array) -> Array:
 
 
 def _moving(model: Model) -> csr_matrix:
-    """From bodies' three unknowns, as if all moved, to those that are unknowns (3m, size)."""
-    every = [np.full(3, -1) if body.dofs is None else body.dofs for body in model.bodies]
-    columns = np.concatenate(every)
+    """Matrix (3m, size) from the unknowns to three unknowns of every body, zero for fixed bodies."""
+    dofs = [np.full(3, -1) if body.dofs is None else body.dofs for body in model.bodies]
+    columns = np.concatenate(dofs)
     rows = np.flatnonzero(columns >= 0)
     return csr_matrix((np.ones(rows.size), (rows, columns[rows])), (columns.size, model.size))

@@ -1,14 +1,14 @@
-"""Where along an edge it lies beyond what it touches, and Gauss points there.
+"""Zones of overlap along an edge, and their Gauss points.
 
 ======  =======================================
 symbol  meaning
 ======  =======================================
 ζ       place along the edge, in nodes
-g(ζ)    gap, infinite where there is nothing
+g(ζ)    gap, infinite without an opposite place
 ======  =======================================
 
-The gap is sampled; where its sign changes the end of a zone is found, and a minimum between samples is looked at.  The
-points move with the zone's ends, and since the pressure vanishes there the energy's derivatives do not feel it.
+The gap is sampled; sign changes bracket the ends of zones, and minima between samples are evaluated. The points move
+with the zone's ends. The pressure vanishes there, so that this motion adds nothing to the energy's derivatives.
 """
 
 from collections.abc import Callable
@@ -18,23 +18,23 @@ import numpy as np
 
 from cprbm_scene.answer import Array
 
-SAMPLES = 6  # between two nodes
+SAMPLES = 6  # samples between two nodes
 _SECANTS = 12
-_VANISHES = 1e-13  # gap at the end of a zone, over the longest beam
+_VANISHES = 1e-13  # lengths of the longest beam: gap at the end of a zone
 
 Gap = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, slots=True)
 class Zones:
-    """Zones (2, z) where g < 0, ascending, and the ``least`` gap anywhere with its ``place``."""
+    """Zones (2, z) with g < 0, ascending, and the ``least`` gap anywhere with its ``place``."""
 
     zones: Array
     least: float
     place: float
 
     def points(self, quadrature: int) -> tuple[Array, Array]:
-        """Gauss points ζ (k,) and weights (k,), so many on each part of a zone between two nodes."""
+        """Gauss points ζ (k,) and weights (k,), ``quadrature`` on each part of a zone between two nodes."""
         nodes, weights = np.polynomial.legendre.leggauss(quadrature)
         places, shares = [np.empty(0)], [np.empty(0)]
         for begin, end in self.zones.T:
@@ -50,7 +50,7 @@ NOWHERE = Zones(np.empty((2, 0)), np.inf, 0.0)
 
 
 def zones(gap: Gap, nodes: int) -> Zones:
-    """Find the zones of an edge of so many nodes."""
+    """The zones of an edge with ``nodes`` nodes."""
     zeta, g = _sampled(gap, nodes)
     lowest = int(np.argmin(g))
     if not g[lowest] < 0.0:
@@ -70,18 +70,18 @@ def zones(gap: Gap, nodes: int) -> Zones:
 
 
 def least(gap: Gap, nodes: int) -> float:
-    """The least gap along an edge of so many nodes."""
+    """The least gap along an edge with ``nodes`` nodes."""
     return float(_sampled(gap, nodes)[1].min())
 
 
 def _sampled(gap: Gap, nodes: int) -> tuple[Array, Array]:
-    """Places along an edge, and the gaps there."""
+    """Sampled places along an edge, and the gaps there."""
     zeta = np.linspace(0.0, nodes - 1.0, SAMPLES * (nodes - 1) + 1)
     return _with_minima(gap, zeta, gap(zeta))
 
 
 def _with_minima(gap: Gap, zeta: Array, g: Array) -> tuple[Array, Array]:
-    """The samples, and the vertex of the parabola through every three of them of which the middle is the least."""
+    """The samples and, for every local minimum, the vertex of the parabola through three samples."""
     with np.errstate(invalid="ignore"):
         middle = (g[1:-1] <= g[:-2]) & (g[1:-1] < g[2:]) & np.isfinite(g[:-2]) & np.isfinite(g[2:])
     i = np.flatnonzero(middle) + 1
@@ -98,7 +98,7 @@ def _with_minima(gap: Gap, zeta: Array, g: Array) -> tuple[Array, Array]:
 
 
 def _roots(gap: Gap, inner: Array, outer: Array, g_inner: Array, g_outer: Array) -> Array:
-    """Where g vanishes between places within (g < 0) and without, by the Illinois form of the false position."""
+    """Zeros of g between places inside (g < 0) and outside, by the Illinois variant of false position."""
     a, b, fa, fb = inner.copy(), outer.copy(), g_inner.copy(), g_outer.copy()
     side = np.zeros(a.size)
     for _ in range(_SECANTS):

@@ -12,10 +12,10 @@ from cprbm_scene import Arc, Line, Polynomial, Spline, scene_from
 from elastica_reference import Settings
 from elastica_reference.curves import neutral_line
 from elastica_reference.march import _advance  # the march itself, stopped at a station
-from elastica_reference.model import modelled
+from elastica_reference.model import model_of
 from elastica_reference.newton import linearised
 from elastica_reference.spectral import Law, UnsolvableError, piece, rule
-from elastica_reference.way import Way
+from elastica_reference.way import Stepping
 from tests.elastica_reference import scenes
 from tests.references.hinge import PAPER
 
@@ -134,7 +134,7 @@ def states():
     """States with a place of contact, a wrap, a slide, an arc and a polynomial in them, off their equilibria."""
     for data, station in ((scenes.case("gripper"), -1), (scenes.hinge(PAPER, [0.5]), 0), (scenes.case("wrapped"), 2)):
         scene = scene_from(data)
-        way = Way(modelled(scene), Settings(nodes=16))
+        way = Stepping(model_of(scene), Settings(nodes=16))
         stage = scene.stages[0]
         way.begin(stage)
         for value in stage.stations[: station + 1 or None]:

@@ -5,7 +5,7 @@ import pytest
 
 from cprbm_scene import scene_from
 from fea_reference import Settings
-from fea_reference.advance import advance, carried, way_to
+from fea_reference.advance import advance, step_between, transported
 from fea_reference.model import build
 from tests.cprbm.scenes import cantilever_data, force
 
@@ -44,8 +44,8 @@ def test_a_rate_that_turns_all_goes_round(model, angle):
     # the first node goes as it is told, what follows keeps its chords' lengths
     at = turned_by(model, angle)
     assert there[dofs] - there[dofs[:, :1]] == pytest.approx(at - at[:, :1], abs=1e-14)
-    assert way_to(model, model.start, there) == pytest.approx(step, abs=1e-13)
+    assert step_between(model, model.start, there) == pytest.approx(step, abs=1e-13)
     # and the same rate of there turns all of it about the place that it has gone to
-    now = carried(model, model.start, there, turning(model, model.start, ABOUT))
+    now = transported(model, model.start, there, turning(model, model.start, ABOUT))
     hub = there[dofs[:, 0]] - np.array([[0.0, -1.0], [1.0, 0.0]]).T @ now[dofs[:, 0]]
     assert now == pytest.approx(turning(model, there, hub), abs=1e-13)

@@ -23,7 +23,7 @@ def test_the_whole_tangent(kinematics, bowed):
     z, values = bent(model), np.array([7.0, 5.0, -3.0, 11.0, 4.0])
 
     def at(z):
-        return assemble(model, {}, 6, values, State.of(z), model.drawn)
+        return assemble(model, {}, 6, values, State.of(z), model.initial_constraints)
 
     tangent = at(z).tangent.toarray()
     for i in range(model.size):
@@ -38,13 +38,13 @@ def test_loads_without_a_value_are_not_looked_at():
     model = build(scene_from(acting(LOADS)), Settings(elements=4))
     values = np.array([0.0, 5.0, 0.0, 0.0, 4.0])
     z = State.of(bent(model))
-    found = assemble(model, {}, 6, values, z, model.drawn)
+    found = assemble(model, {}, 6, values, z, model.initial_constraints)
     assert [load.value for load in found.loads] == [5.0, 4.0]
     alone = sum(
         (np.bincount(load.dofs.ravel(), load.gradient.ravel(), model.size) for load in found.loads),
         np.zeros(model.size),
     )
-    without = assemble(model, {}, 6, 0.0 * values, z, model.drawn)
+    without = assemble(model, {}, 6, 0.0 * values, z, model.initial_constraints)
     assert found.residual + alone == pytest.approx(without.residual, abs=1e-12 * found.scale)
 
 

@@ -25,8 +25,8 @@ def test_what_overlaps_by_more_than_was_asked_is_not_certified(thick):
     assert certify(march).failures == ()
     march.settings = replace(settings, penetration=1e-4)
     (failure,) = certify(march).failures
-    assert failure.startswith("what touches in touch overlaps by ")
-    assert failure.endswith("; 1.0e-04 was asked")
+    assert failure.startswith("contact touch has a relative penetration of ")
+    assert failure.endswith("; 1.0e-04 was requested")
     # as tight as the penalties are made for the penetration that was asked of them, or for what may be felt of it
     assert 2e-3 < float(failure.split(";")[0].rsplit(" ", 1)[1]) <= 1e-2
 

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from cprbm_scene import Ending, Profile, Scene, Stage
 from cprbm_scene.statement import Force
 from fea_reference import Settings, answer
-from fea_reference.circle import circles, passed, touch
+from fea_reference.circle import circles, passes_through, touch
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
@@ -271,8 +271,8 @@ def test_a_circle_is_not_stepped_over():
     (circle,) = circles(scene, model, 1e-4)
     turned = model.start.values.copy()
     turned[model.node_dofs[1]] = -turned[model.node_dofs[0]]
-    assert passed(model, circle, model.start, State.of(turned))
-    assert not passed(model, circle, model.start, model.start)
+    assert passes_through(model, circle, model.start, State.of(turned))
+    assert not passes_through(model, circle, model.start, model.start)
     got = solved(scene, elements=40, kinematics="stretch")
     assert got.stations[0].values["contact.force"][0] > 0.0
 

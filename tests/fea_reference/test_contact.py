@@ -6,14 +6,14 @@ import pytest
 from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 from fea_reference.contact import least_at_ends, touch
-from fea_reference.contacts import against, clear, contacts, zones_of
-from fea_reference.crossing import cross
+from fea_reference.contacts import contacts, motion_before_overlap, relative_motion, zones_of
+from fea_reference.crossing import lines_cross
 from fea_reference.facing import borders
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from fea_reference.zones import Gap, negative, overlap, seen
+from fea_reference.zones import Gap, negative, overlap, survey_pair
 from tests.fea_reference.cantilever import elastica
 
 YOUNG, WIDTH, T = 2e9, 0.01, 0.002
@@ -159,9 +159,9 @@ def test_crossing_is_seen():
         return NeutralLine.through(at, np.zeros(len(points)), none + 1.0, np.zeros_like(at), none, none)
 
     level = straight((0, 0), (1, 0), (2, 0))
-    assert cross(level, straight((0.3, -1), (0.7, 0.5)))
-    assert not cross(level, straight((0.3, 0.1), (0.7, 0.5)))
-    assert not cross(level, straight((2.1, -1), (2.2, 0.5)))
+    assert lines_cross(level, straight((0.3, -1), (0.7, 0.5)))
+    assert not lines_cross(level, straight((0.3, 0.1), (0.7, 0.5)))
+    assert not lines_cross(level, straight((2.1, -1), (2.2, 0.5)))
 
 
 C, DROP = 0.08, 0.005
@@ -257,8 +257,8 @@ def test_a_beams_end_presses_along_the_others_normal(order):
 
 def first_at_first(monkeypatch):
     """The beam named first carries the integral, whichever has an end over the other's inside."""
-    monkeypatch.setattr("fea_reference.contact.ends_over", lambda first, second: False)
-    monkeypatch.setattr("fea_reference.contact.end_apart", lambda first, second: np.inf)
+    monkeypatch.setattr("fea_reference.contact.has_end_over", lambda first, second: False)
+    monkeypatch.setattr("fea_reference.contact.end_distance", lambda first, second: np.inf)
 
 
 def test_beams_change_places_where_an_end_of_the_second_touches(monkeypatch):
@@ -333,7 +333,7 @@ def test_what_an_integral_along_the_wrong_beam_leaves_out_is_the_energy_by_the_e
 def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):
     first_at_first(monkeypatch)
     monkeypatch.setattr("fea_reference.contact.least_at_ends", lambda model, pair, z: np.inf)
-    monkeypatch.setattr("fea_reference.march.March.change_places", lambda march: None)
+    monkeypatch.setattr("fea_reference.march.March.exchange_beams", lambda march: None)
     got = answer(end_under_side(("upper", "lower")), Settings(elements=30, penetration=1e-6))
     assert got.ending is Ending.NOT_CERTIFIED
     assert "an end of lower presses on the side of upper" in got.sentence
@@ -356,7 +356,7 @@ def test_a_tip_s_zone_ends_where_its_gap_does(depth, angle):
     steep = NeutralLine.through(
         points, np.full(n + 1, -angle), np.full(n, 1 / n), np.zeros((2, n + 1)), np.zeros(n), np.zeros(n)
     )
-    found = overlap(steep, level, 0.0, seen(steep, level, 1.0, 0.0), 0.0, [borders(level, None, 1.0)])
+    found = overlap(steep, level, 0.0, survey_pair(steep, level, 1.0, 0.0), 0.0, [borders(level, None, 1.0)])
     begin, end = found.intervals.min(), found.intervals.max()
     assert end == n
     assert n - begin == pytest.approx(n * depth / np.sin(angle), rel=1e-6, abs=4e-14 * n)
@@ -409,7 +409,7 @@ def test_what_moves_by_less_than_is_clear_does_not_overlap(order):
     )
     model = build(scene, settings)
     (pair,) = contacts(scene, model, settings.penetration)
-    room = clear(model, pair, model.start)
+    room = motion_before_overlap(model, pair, model.start)
     assert 0.4 * apart < room * model.units.length < (1.0 + 1e-9) * apart
     rng = np.random.default_rng(7)
     for _ in range(20):
@@ -418,5 +418,5 @@ def test_what_moves_by_less_than_is_clear_does_not_overlap(order):
             angle = rng.uniform(-np.pi, np.pi)
             values[model.node_dofs[:2, beam.nodes]] += 0.5 * room * np.array([[np.cos(angle)], [np.sin(angle)]])
         moved = State.of(values)
-        assert against(model, pair, model.start, moved) <= room * (1.0 + 1e-9)
+        assert relative_motion(model, pair, model.start, moved) <= room * (1.0 + 1e-9)
         assert zones_of(model, pair, moved).least >= -1e-12

@@ -57,7 +57,7 @@ def test_a_column_beyond_eulers_loads(times, unstable, elements):
     z = model.start.values.copy()
     z[model.element_dofs[6]] = -pushed
     z[[joint.rows[0] for joint in model.joints]] = -pushed, pushed
-    system = assemble(model, {}, 6, np.array([pushed]), State.of(z), model.drawn)
+    system = assemble(model, {}, 6, np.array([pushed]), State.of(z), model.initial_constraints)
     assert np.abs(system.residual).max() < 1e-9 * pushed
     got = softest(model, system).curvature
     assert (got < 0.0) == unstable
@@ -97,7 +97,7 @@ def test_the_softest_of_beams_that_know_nothing_of_each_other_is_the_longest():
         }
     )
     model = build(scene, Settings(elements=7, kinematics="bending"))
-    system = assemble(model, {}, 6, np.array([0.0]), model.start, model.drawn)
+    system = assemble(model, {}, 6, np.array([0.0]), model.start, model.initial_constraints)
     mode = softest(model, system)
     assert mode.curvature == pytest.approx(dense(model, system), rel=1e-6)
     longest, *others = (np.abs(mode.direction[model.node_dofs[:, beam.nodes]]).max() for beam in model.beams)

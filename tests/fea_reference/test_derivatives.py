@@ -131,7 +131,7 @@ def test_the_whole_tangent():
     z, values = bent(model), np.array([0.7])
 
     def at(z):
-        return assemble(model, {}, 6, values, State.of(z), model.drawn)
+        return assemble(model, {}, 6, values, State.of(z), model.initial_constraints)
 
     tangent = at(z).tangent.toarray()
     for i in range(model.size):

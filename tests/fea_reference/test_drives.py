@@ -135,7 +135,7 @@ def test_the_whole_tangent_with_guides_drives_and_loads():
     assert (len(model.guides), len(model.drives), len(model.loads)) == (2, 2, 1)
 
     def at(z):
-        return assemble(model, {}, 6, values, State.of(z), model.drawn)
+        return assemble(model, {}, 6, values, State.of(z), model.initial_constraints)
 
     bodies = np.concatenate([body.dofs for body in model.bodies if body.dofs is not None])
     tangent = at(z).tangent.toarray()

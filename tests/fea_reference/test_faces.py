@@ -9,7 +9,7 @@ from scipy.optimize import brentq, fsolve
 
 from cprbm_scene import Ending
 from fea_reference import Settings, answer
-from fea_reference.face import faces, passed, touch
+from fea_reference.face import faces, passes_through, touch
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
@@ -388,11 +388,11 @@ def test_what_goes_through_an_edge_is_seen():
         z[model.node_dofs[1]] -= by
         return State.of(z)
 
-    assert not passed(model, face, model.start, lowered(0.05))
-    assert not passed(model, face, model.start, lowered(0.12))  # sunk in, and held for it
-    assert passed(model, face, model.start, lowered(0.3))
+    assert not passes_through(model, face, model.start, lowered(0.05))
+    assert not passes_through(model, face, model.start, lowered(0.12))  # sunk in, and held for it
+    assert passes_through(model, face, model.start, lowered(0.3))
     beside = cantilever_over({"kind": "beam-line", "points": ((1.3, -0.1), (1.6, -0.1)), "side": "left"})
-    assert not passed(model, faces(beside, model, 1e-4)[0], model.start, lowered(0.3))
+    assert not passes_through(model, faces(beside, model, 1e-4)[0], model.start, lowered(0.3))
 
 
 def test_what_slides_over_a_tip_that_it_has_sunk_onto_goes_through_nothing():
@@ -408,7 +408,7 @@ def test_what_slides_over_a_tip_that_it_has_sunk_onto_goes_through_nothing():
             z = model.start.values.copy()
             z[model.node_dofs[0]] += way
             states.append(State.of(z))
-        return passed(model, face, *states)
+        return passes_through(model, face, *states)
 
     assert not moved(0.5, 1e-4, (-3e-4, 3e-4))
     assert not moved(0.5, 1e-4, (3e-4, -3e-4))

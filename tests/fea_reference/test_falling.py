@@ -12,7 +12,7 @@ import pytest
 from cprbm_scene import scene_from
 from fea_reference import Settings, answer, descent, prepared
 from fea_reference.assembly import assemble_ends
-from fea_reference.following import followed
+from fea_reference.following import follow_branch
 from fea_reference.travel import Course, reach
 from tests.together import branches
 
@@ -25,7 +25,7 @@ def at_the_fold():
     march = prepared(scene, Settings(elements=16, kinematics="bending")).march
     assemble_ends(scene, march)
     reach(march, Course(0, TURNED), 0.5)
-    return march, followed(march, 0, TURNED, TURNED)
+    return march, follow_branch(march, 0, TURNED, TURNED)
 
 
 def test_a_fall_beyond_a_fold_takes_few_steps(monkeypatch):
@@ -39,7 +39,7 @@ def test_a_fall_beyond_a_fold_takes_few_steps(monkeypatch):
         return made
 
     monkeypatch.setattr(descent, "_step", watched)
-    assert descent.descended(march, 0, TURNED, TURNED, lost) is not None
+    assert descent.descend(march, 0, TURNED, TURNED, lost) is not None
     assert len(failed) <= 2
 
 

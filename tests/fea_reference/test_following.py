@@ -13,9 +13,9 @@ import fea_reference
 from cprbm_scene import Loss, scene_from
 from fea_reference import Settings, following, prepared
 from fea_reference.assembly import assemble_ends
-from fea_reference.branch import Place
+from fea_reference.branch import BranchPoint
 from fea_reference.curvature import Mode
-from fea_reference.following import followed
+from fea_reference.following import follow_branch
 from fea_reference.travel import Course, reach
 from tests.fea_reference import faint_contact
 from tests.fea_reference.cantilever import EI, LENGTH, cantilever
@@ -35,7 +35,7 @@ def turned_to(clamp, stopped_at=None):
 
 
 def test_a_fold_is_found_and_known_as_finely_as_told():
-    lost = followed(turned_to(0.5), 0, TURNED, TURNED)
+    lost = follow_branch(turned_to(0.5), 0, TURNED, TURNED)
     assert lost.loss is Loss.FOLD
     assert lost.value == pytest.approx(SNAP.fold.clamp, rel=2e-4)
     # λ is even about its fold: where the curvature's zero lies within a 10⁻⁴ of a step, λ is known to its square
@@ -45,7 +45,7 @@ def test_a_fold_is_found_and_known_as_finely_as_told():
 def test_a_stop_that_acts_before_the_fold_holds_beyond_it():
     """The beam's far end comes down to the stop's angle at φ = 0.6, before the fold, and stands there as φ grows."""
     march = turned_to(0.5, SNAP.at(0.6).far)
-    assert followed(march, 0, TURNED, TURNED) is None
+    assert follow_branch(march, 0, TURNED, TURNED) is None
     assert march.closing["stop"] == pytest.approx(0.6, rel=2e-4)
     assert "stop" in march.acting.limits
     assert march.values[0] > 1.05 * SNAP.fold.clamp
@@ -77,7 +77,7 @@ def test_the_march_stands_before_a_station_behind_which_the_branch_ends(elements
     assemble_ends(scene, march)
     before, target = (share * GREENHILL / march.model.stepped[0].unit for share in (0.9, 0.99))
     reach(march, Course(0, before), before)
-    assert followed(march, 0, target, target) is None
+    assert follow_branch(march, 0, target, target) is None
     assert before < march.values[0] <= target
     assert march.curvature > 1e-3
 
@@ -110,7 +110,7 @@ class Sharp:
 
     @staticmethod
     def place(value, curvature, way, rate, s):
-        return Place(
+        return BranchPoint(
             float(value), SimpleNamespace(z=None, s=s, touches=()), Mode(curvature, np.ones(1)), np.array([way]), rate
         )
 
@@ -124,30 +124,30 @@ class Sharp:
 def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     sharp, ends = Sharp(), []
     unit = SimpleNamespace(weights=np.ones(1), weight=1.0, at=lambda value: np.array([value]))
-    monkeypatch.setattr(following, "_letting_go", lambda march, load, target, span: None)
-    monkeypatch.setattr(following, "_slipping_off", lambda march, load, target, span: None)
+    monkeypatch.setattr(following, "_vanishing_contact", lambda march, load, target, span: None)
+    monkeypatch.setattr(following, "_end_slip", lambda march, load, target, span: None)
     monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
-    monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
-    monkeypatch.setattr(following, "onwards", sharp.onwards)
-    monkeypatch.setattr(following, "_apart", lambda branch, one, other: 0.0)
+    monkeypatch.setattr(following, "branch_point", lambda branch, value, system, before: sharp.at(0.0))
+    monkeypatch.setattr(following, "point_at", sharp.onwards)
+    monkeypatch.setattr(following, "_distance", lambda branch, one, other: 0.0)
 
     def lost(march, branch, first, here, there, length):
         ends.append((here, there))
         return SimpleNamespace(value=here.value, uncertainty=0.0, system=there.system)
 
-    monkeypatch.setattr(following, "_lost", lost)
+    monkeypatch.setattr(following, "_critical_between", lost)
     march = SimpleNamespace(
         saved=lambda: None,
-        look=lambda: None,
-        loose=False,
-        soft=lambda: False,
+        update_sides=lambda: None,
+        loosened=False,
+        has_soft_penalty=lambda: False,
         values=np.zeros(1),
         system=SimpleNamespace(z=None, touches=()),
         model=SimpleNamespace(size=1, moving=np.array([True])),
         least_gap=lambda system: np.inf,
-        passed=lambda before, system, what: None,
+        passing_failure=lambda before, system, what: None,
     )
-    followed(march, 0, 1.0, 1.0)
+    follow_branch(march, 0, 1.0, 1.0)
     ((here, there),) = ends
     assert here.curvature > 0.0 >= there.curvature
     assert here.value == pytest.approx(END, abs=RADIUS)
@@ -163,10 +163,10 @@ def test_places_on_two_branches_are_told_apart_at_once():
         values = np.array([s if s < 0.37 else s + 0.2])
         z = SimpleNamespace(values=values, rest=np.zeros(1))
         curvature = 1.0 if s < 0.37 else -3.0
-        return Place(values[0], SimpleNamespace(z=z), Mode(curvature, np.ones(1)), np.ones(1), 1.0)
+        return BranchPoint(values[0], SimpleNamespace(z=z), Mode(curvature, np.ones(1)), np.ones(1), 1.0)
 
     branch = SimpleNamespace(weights=np.full(1, 0.5), weight=0.5, span=1.0)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(following, "onwards", lambda branch, here, length: at(length))
-        assert following._lost(None, branch, at(0.0), at(0.0), at(0.5), 0.5) is None
+        patched.setattr(following, "point_at", lambda branch, here, length: at(length))
+        assert following._critical_between(None, branch, at(0.0), at(0.0), at(0.5), 0.5) is None
     assert len(seen) < 15

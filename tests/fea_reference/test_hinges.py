@@ -37,7 +37,7 @@ def test_the_whole_tangent():
     z[model.multipliers] = np.random.default_rng(2).standard_normal(model.multipliers.size)
 
     def at(z):
-        return assemble(model, {}, 6, np.array([0.3]), State.of(z), model.drawn)
+        return assemble(model, {}, 6, np.array([0.3]), State.of(z), model.initial_constraints)
 
     tangent = at(z).tangent.toarray()
     assert tangent == pytest.approx(tangent.T, abs=1e-12 * np.abs(tangent).max())

@@ -7,17 +7,17 @@ import pytest
 
 from cprbm_scene import Ending
 from fea_reference import Settings, answer
-from fea_reference.contact import selves, touch
-from fea_reference.contacts import looked_at, passed_through, zones_of
-from fea_reference.crossing import cross, crosses_itself
+from fea_reference.contact import self_contacts, touch
+from fea_reference.contacts import passed_through, with_current_sides, zones_of
+from fea_reference.crossing import crosses_itself, lines_cross
 from fea_reference.edge import Edge
 from fea_reference.facing import Tapers
 from fea_reference.hermite import NeutralLine
-from fea_reference.itself import seen_itself, unseen
+from fea_reference.itself import survey_self, without_known_sides
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from fea_reference.zones import none
+from fea_reference.zones import no_zones
 from tests.fea_reference.differences import check
 from tests.fea_reference.meeting_itself import (
     AT,
@@ -163,7 +163,7 @@ def closed_arch(kinematics, elements=14):
     z = model.start.values.copy()
     z[model.node_dofs] = np.stack([x, y, tangents(x, y)]) + 0.003 * rng.standard_normal((3, x.size))
     z[model.element_dofs[6]] = rng.standard_normal(model.element_dofs.shape[1])
-    (pair,) = selves(scene, model)
+    (pair,) = self_contacts(scene, model)
     least = zones_of(model, pair, State.of(z)).least
     assert least > 0.0
     return model, replace(pair, distance=pair.distance + least + 0.01), z
@@ -218,11 +218,11 @@ def spiral(pitch, nodes):
 def test_which_lines_cross_themselves():
     """Laps much nearer than the chords of elements bow do not; a loop of a wire does."""
     near = spiral(0.02, 26)
-    assert cross(near, near)  # the chords do
-    assert not crosses_itself(near, none(0.0))
+    assert lines_cross(near, near)  # the chords do
+    assert not crosses_itself(near, no_zones(0.0))
     t = np.linspace(-1.3, 1.3, 25)  # the cubic t ↦ (t² − 1, t (t² − 1)) crosses itself at the origin
     assert crosses_itself(
-        curve(t**2 - 1.0, t * (t**2 - 1.0), np.unwrap(np.arctan2(3.0 * t**2 - 1.0, 2.0 * t))), none(0.0)
+        curve(t**2 - 1.0, t * (t**2 - 1.0), np.unwrap(np.arctan2(3.0 * t**2 - 1.0, 2.0 * t))), no_zones(0.0)
     )
 
 
@@ -232,7 +232,7 @@ def test_a_beam_that_has_passed_through_itself_is_seen():
     model = build(scene, Settings(elements=40))
     drawn = solved(scene).stations[-1].shapes["strip"]
     x, y = (np.stack([drawn.x, drawn.y]) - model.units.origin[:, None]) / model.units.length
-    (pair,) = selves(scene, model)
+    (pair,) = self_contacts(scene, model)
 
     def state(x):
         z = model.start.values.copy()
@@ -240,21 +240,23 @@ def test_a_beam_that_has_passed_through_itself_is_seen():
         return State.of(z)
 
     before = state(x)
-    pair = looked_at(model, pair, before)
+    pair = with_current_sides(model, pair, before)
     assert not passed_through(model, pair, model.start, before)
     middle, share = x.mean(), np.linspace(-1.0, 1.0, x.size)
     after = state(x - 0.12 * np.sign(x - middle) * (1.0 - share**2) * (np.abs(share) > 0.3))
     # what lies on the other side than before is as deep as it has passed, and no equilibrium is certified with that
     assert zones_of(model, pair, after).least < -pair.distance
     # where nothing is known of the sides, chords tell
-    assert passed_through(model, replace(pair, distance=0.0, roles=unseen(later=True, ended=False)), before, after)
+    assert passed_through(
+        model, replace(pair, distance=0.0, roles=without_known_sides(later=True, ended=False)), before, after
+    )
 
 
 def test_neighbours_never_touch():
     """A bend much tighter than the thickness is not one that touches itself."""
     scene = arch(T_ARCH, [0.09], thick=True)
     model = build(scene, Settings(elements=40))
-    (pair,) = selves(scene, model)
+    (pair,) = self_contacts(scene, model)
     thick = replace(pair, distance=0.5)
     assert zones_of(model, thick, model.start).least > 0.0
 
@@ -271,7 +273,7 @@ def test_a_place_across_from_an_end_that_leans_is_looked_at():
     x = np.where(s < 1.0, s, np.where(turned < np.pi, 1.0 + bend * np.sin(turned), back))
     line = curve(x, bend * (1.0 - np.cos(turned)), turned)
     edge = Edge((0.0, float(n)), (0.05, 0.15))
-    survey = seen_itself(line, unseen(later=True, ended=False), 0.2, Tapers(edge, edge))
+    survey = survey_self(line, without_known_sides(later=True, ended=False), 0.2, Tapers(edge, edge))
     last = float(line.at(survey.zeta[-1:])[0][0, 0])
     assert last == pytest.approx(-2.0 * bend * np.tan(np.arcsin(0.1 / line.lengths.sum())), rel=1e-2)
     assert survey.there.zeta_m[-1] == pytest.approx(0.0, abs=1e-9)

@@ -38,8 +38,8 @@ def test_what_overlaps_by_more_than_was_asked_for_is_not_left_however_often_it_w
     march = SimpleNamespace(settings=Settings(penetration=2.3e-4), penalties={pair: SimpleNamespace(stiffness=470.0)})
     for share, done in ((0.9, True), (1.1, False)):
         one = SimpleNamespace(pair=pair, penetration=share * 2.3e-4 * 0.043)
-        assert March._will_do(march, one, 1.7, 40, 2.3e-4 * 0.043) == done
-        assert not March._will_do(march, one, 1.7, 0, 2.3e-4 * 0.043)
+        assert March._penalty_accepted(march, one, 1.7, 40, 2.3e-4 * 0.043) == done
+        assert not March._penalty_accepted(march, one, 1.7, 0, 2.3e-4 * 0.043)
 
 
 def test_of_three_gaps_the_first_to_close_is_found_though_another_seemed_to_be():

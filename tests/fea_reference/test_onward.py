@@ -25,7 +25,7 @@ def touching():
     for _ in range(20):
         if march.penalties:
             return march, last
-        assert march.step(0, float(march.values[0]) + 0.11 * last, march.onward(0, march.rate(0), last)) is None
+        assert march.step(0, float(march.values[0]) + 0.11 * last, march.path_tangent(0, march.rate(0), last)) is None
     pytest.fail("nothing touches")
 
 
@@ -33,21 +33,21 @@ def test_the_rate_on_is_that_of_the_equilibria_with_the_contact(touching):
     march, last = touching
     stiff, moving = march.saved(), march.model.moving
     stiff.penalties = {pair: Penalty(STIFF * penalty.stiffness) for pair, penalty in march.penalties.items()}
-    stiff.renew()
-    onward, before = stiff.onward(0, stiff.rate(0), last), stiff.system
-    assert stiff.step(0, float(stiff.values[0]) + SHARE * last, onward) is None
+    stiff.reassemble()
+    tangent, before = stiff.path_tangent(0, stiff.rate(0), last), stiff.system
+    assert stiff.step(0, float(stiff.values[0]) + SHARE * last, tangent) is None
     quotient = (stiff.system.z.values - before.z.values)[moving] / (SHARE * last)
-    free, held = (float(np.abs(rate[moving] - quotient).max()) for rate in (march.rate(0), onward.rate))
+    free, held = (float(np.abs(rate[moving] - quotient).max()) for rate in (march.rate(0), tangent.rate))
     # what the penalty gives way, and the branch bends, in so short a step is of the order of its length
     assert held < 0.05 * free
-    (push,) = onward.pushes.values()
+    (push,) = tangent.pushes.values()
     assert push * SHARE * last == pytest.approx(stiff.system.touches[0].push, rel=0.03)
 
 
 def test_on_the_way_back_nothing_holds(touching):
     march, _ = touching
     rate = march.rate(0)
-    back = march.onward(0, rate, 0.0)
+    back = march.path_tangent(0, rate, 0.0)
     assert not back.pushes
     assert back.rate is rate
 
@@ -58,7 +58,7 @@ def test_a_step_begins_where_the_contact_pushes_as_foreseen(touching):
     (pair,) = march.penalties
     value = float(march.values[0]) + 0.07 * last
     spent = march.iterations
-    assert march.step(0, value, march.onward(0, march.rate(0), last)) is None
+    assert march.step(0, value, march.path_tangent(0, march.rate(0), last)) is None
     assert march.values[0] == value
     assert zones_of(march.model, pair, march.system.z).least < 0.0
     assert march.iterations - spent <= 5  # from the rate without the contact it is nine

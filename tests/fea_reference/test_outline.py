@@ -62,7 +62,7 @@ def test_sides_that_meet_behind_an_edge_are_those_of_a_block():
     assert found.normal == pytest.approx(expected.normal, abs=1e-12)
     assert found.bend == pytest.approx(expected.bend, rel=1e-9, abs=1e-12)
     assert edge.corners.points[:, -1] == pytest.approx(fourth, rel=1e-12)
-    assert edge.corners.jutting.all()
+    assert edge.corners.convex.all()
 
 
 def test_a_side_ends_where_it_comes_to_the_edge_from_behind():
@@ -106,7 +106,7 @@ def test_a_distance_far_along_an_edge_has_all_its_digits(edge):
     if edge == "a corner":
         y = ends[:, :1] + 0.0037 * np.array([np.cos(along + 1.0), np.sin(along + 1.0)])
     rest = rng.uniform(-1.0, 1.0, y.shape) * 1e-16
-    found = outline.kept(y, rest)
+    found = outline.exact_distance(y, rest)
     with localcontext() as context:
         context.prec = 50
         for i in range(along.size):

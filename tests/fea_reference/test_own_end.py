@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fea_reference import Settings
-from fea_reference.contact import selves, touch
+from fea_reference.contact import self_contacts, touch
 from fea_reference.contacts import zones_of
 from fea_reference.model import build
 from fea_reference.state import State
@@ -25,7 +25,7 @@ def closed(lean, thickness, *, backwards):
     z = model.start.values.copy()
     z[model.node_dofs] += 0.002 * rng.standard_normal(model.node_dofs.shape)
     z[model.element_dofs[6]] = rng.standard_normal(model.element_dofs.shape[1])
-    (pair,) = selves(hook(lean, thickness, [0.0091], backwards=backwards), model)
+    (pair,) = self_contacts(hook(lean, thickness, [0.0091], backwards=backwards), model)
     return model, replace(pair, distance=pair.distance + zones_of(model, pair, State.of(z)).least + 0.01), z
 
 

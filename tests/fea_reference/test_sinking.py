@@ -8,7 +8,7 @@ from cprbm_scene import Ending
 from fea_reference import Settings, answer, prepared
 from fea_reference.advance import advance
 from fea_reference.contacts import touch
-from fea_reference.sinking import known_depths, sunk
+from fea_reference.sinking import known_depths, with_predicted_depths
 from fea_reference.travel import Course, reach
 
 PRESSED = 0.5  # of the hinge's last moment, with which its beams touch
@@ -38,7 +38,7 @@ def test_a_contact_pushes_as_foreseen_from_wherever_a_step_has_left_it(pressed, 
     aside = advance(model, system.z, by / float(c @ motion) * motion)
     known = known_depths(system, pressed.depths(), pressed.pushes())
     foreseen = {one.pair: share * one.pushes}
-    there = sunk(model, pressed.penalties, pressed.settings.quadrature, system, aside, foreseen, known)
+    there = with_predicted_depths(model, pressed.penalties, pressed.settings.quadrature, system, aside, foreseen, known)
     pressed_there = pressed_at(pressed, there)
     assert pressed_there.push == pytest.approx(share * one.push, rel=1e-2)
     assert np.abs((there.values - system.z.values)[model.moving]).max() < 1e-3

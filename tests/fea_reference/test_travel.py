@@ -11,16 +11,16 @@ import pytest
 
 from cprbm_scene import Ending, Loss
 from fea_reference import travel
-from fea_reference.following import Lost
+from fea_reference.following import CriticalPoint
 from fea_reference.march import StoppedError
-from fea_reference.travel import Course, _arrive
+from fea_reference.travel import Course, _step_to
 
 MODEL = SimpleNamespace(moving=np.array([True]), stepped=[SimpleNamespace(unit=1.0)])
 
 
 @pytest.fixture(autouse=True)
 def _energy_is_kept(monkeypatch):
-    monkeypatch.setattr(travel, "_jumped", lambda *step: False)
+    monkeypatch.setattr(travel, "_released_energy", lambda *step: False)
 
 
 @dataclass
@@ -35,28 +35,30 @@ class Ways:
     closings: tuple[float, ...] = ()
     values: np.ndarray = field(default_factory=lambda: np.zeros(1))
     penalties: dict[float, float] = field(default_factory=dict)
-    loose: bool = False
+    loosened: bool = False
     iterations: int = 0
     steps: int = 0
-    far: bool = False
+    zones_far: bool = False
     acting: tuple[str, ...] = ()
-    behind: None = None
-    course: None = None
+    last_step: None = None
+    previous_point: None = None
     curvature: float = -1.0
     model = MODEL
     settings: SimpleNamespace = field(
         default_factory=lambda: SimpleNamespace(iteration_limit=100000, kinematics="shear")
     )
-    pull: float = 0.0
+    largest_axial_force: float = 0.0
 
-    def foregone(self, load):
+    def points_before(self, load):
         return []
 
     def saved(self):
-        return Ways(values=self.values.copy(), penalties=dict(self.penalties), loose=self.loose, acting=self.acting)
+        return Ways(
+            values=self.values.copy(), penalties=dict(self.penalties), loosened=self.loosened, acting=self.acting
+        )
 
     def restore(self, saved):
-        self.values, self.penalties, self.loose = saved.values.copy(), dict(saved.penalties), saved.loose
+        self.values, self.penalties, self.loosened = saved.values.copy(), dict(saved.penalties), saved.loosened
 
     def rate(self, load):
         return np.zeros(1)
@@ -66,29 +68,29 @@ class Ways:
         self.iterations += 3
         here = self.values[load]
         over, closing = ([p for p in places if here < p <= value] for places in (self.narrows, self.closings))
-        if (over and value - here > 0.002) or len(closing) > 1 or (closing and not self.loose):
+        if (over and value - here > 0.002) or len(closing) > 1 or (closing and not self.loosened):
             return Ending.STEP_TOO_SMALL, "no way"
         if closing:
-            self.penalties[closing[0]], self.loose = 1.0, False
+            self.penalties[closing[0]], self.loosened = 1.0, False
         self.values[load] = value
         return None
 
     def loosen(self, *kinds):
         if not self.closings:
             return False
-        self.loose = True
+        self.loosened = True
         return True
 
-    def cut(self):
+    def has_deep_tip(self):
         return False
 
-    def gone(self, load, saved, rate, ahead):
+    def step_record(self, load, saved, rate, ahead):
         return None
 
-    def onward(self, load, rate, target):
+    def path_tangent(self, load, rate, target):
         return SimpleNamespace(rate=rate)
 
-    def shown(self, load, value):
+    def described(self, load, value):
         return f"{value:g}"
 
 
@@ -97,23 +99,23 @@ WALL = 0.61803
 
 def test_cuts_count_in_a_row_and_a_step_that_was_cut_grows_again():
     march = Ways(narrows=tuple(0.07 * k + 0.0213 for k in range(1, 13)))
-    _arrive(march, Course(0, 1.0), 1.0, watched=False)
+    _step_to(march, Course(0, 1.0), 1.0, watched=False)
     assert march.values[0] == 1.0
     assert march.steps < 12 * 25  # at the size of what was cut last it would take 500 or more
 
 
 def test_penalties_are_loosened_once_for_every_contact_that_closes():
     march = Ways(closings=(0.37, 0.71, 0.93))
-    _arrive(march, Course(0, 1.0), 1.0, watched=False)
+    _step_to(march, Course(0, 1.0), 1.0, watched=False)
     assert march.values[0] == 1.0
     assert list(march.penalties) == [0.37, 0.71, 0.93]
 
 
 def test_where_there_is_no_way_steps_end(monkeypatch):
-    monkeypatch.setattr("fea_reference.travel.followed", lambda *asked: None)
+    monkeypatch.setattr("fea_reference.travel.follow_branch", lambda *asked: None)
     march = Ways(closings=(0.37, 0.37))
     with pytest.raises(StoppedError) as stopped:
-        _arrive(march, Course(0, 1.0), 1.0, watched=False)
+        _step_to(march, Course(0, 1.0), 1.0, watched=False)
     assert stopped.value.ending is Ending.STEP_TOO_SMALL
     assert march.values[0] < 0.37
     assert march.steps < 40  # 4⁻¹⁰ is twenty halvings
@@ -126,32 +128,32 @@ class Yielding(Ways):
     Where penalties are ``tightened``; ``again`` is where they are loosened after that.
     """
 
-    loose: bool = True
+    loosened: bool = True
     tightened: list[float] = field(default_factory=list)
     again: list[float] = field(default_factory=list)
 
     def saved(self):
-        return Yielding(values=self.values.copy(), loose=self.loose)
+        return Yielding(values=self.values.copy(), loosened=self.loosened)
 
     def step(self, load, value, rate):
         self.steps += 1
         self.iterations += 3
-        if value > WALL and self.loose:
+        if value > WALL and self.loosened:
             return Ending.BEAMS_CROSSED, "through"
         if value > WALL and value - self.values[load] > 0.0004:
             return Ending.STEP_TOO_SMALL, "no way"
         self.values[load] = value
         return None
 
-    def sunk(self):
-        return self.loose
+    def has_deep_pair(self):
+        return self.loosened
 
     def tighten(self):
-        self.loose = False
+        self.loosened = False
         self.tightened.append(float(self.values[0]))
 
     def loosen(self, *kinds):
-        self.loose = True
+        self.loosened = True
         if self.values[0] in self.tightened:
             self.again.append(float(self.values[0]))
         return True
@@ -159,9 +161,9 @@ class Yielding(Ways):
 
 def test_what_was_tightened_lest_it_goes_through_is_not_loosened_where_it_stands(monkeypatch):
     # from a place where loose penalties let it through, and tight ones ask for shorter steps, these are to be made
-    monkeypatch.setattr("fea_reference.travel.followed", lambda *asked: None)
+    monkeypatch.setattr("fea_reference.travel.follow_branch", lambda *asked: None)
     march = Yielding()
-    _arrive(march, Course(0, 1.0), WALL + 0.002, watched=False)
+    _step_to(march, Course(0, 1.0), WALL + 0.002, watched=False)
     assert march.values[0] == WALL + 0.002
     assert march.tightened
     assert not march.again
@@ -183,10 +185,10 @@ class Creeping(Ways):
 def test_steps_that_grow_ever_shorter_without_leading_on_end(monkeypatch):
     # ten cuts in a row make of the way to λ = 1 a step of 4⁻¹⁰; where a second of these fails is the end, and what
     # succeeds in between does not count.  The distance to the wall falls by a third at the least with every success
-    monkeypatch.setattr("fea_reference.travel.followed", lambda *asked: None)
+    monkeypatch.setattr("fea_reference.travel.follow_branch", lambda *asked: None)
     march = Creeping()
     with pytest.raises(StoppedError) as stopped:
-        _arrive(march, Course(0, 1.0), 1.0, watched=False)
+        _step_to(march, Course(0, 1.0), 1.0, watched=False)
     assert stopped.value.ending is Ending.STEP_TOO_SMALL
     assert 0.0 < WALL - march.values[0] < 1e-5
     assert march.steps < 150  # to the last digit of the wall it would be 279
@@ -235,12 +237,12 @@ def ending(monkeypatch, march, *, lets_go):
 
     def follow(march, load, target, span):
         followed.append(float(march.values[load]))
-        return Lost(END, 0.0, Loss.FOLD, "", 0.0, 0.0, 0.0, march.system, np.zeros(1))
+        return CriticalPoint(END, 0.0, Loss.FOLD, "", 0.0, 0.0, 0.0, march.system, np.zeros(1))
 
-    monkeypatch.setattr(travel, "followed", follow)
-    monkeypatch.setattr(travel, "about_to_go", lambda march, load, value: lets_go and value > END)
+    monkeypatch.setattr(travel, "follow_branch", follow)
+    monkeypatch.setattr(travel, "force_about_to_vanish", lambda march, load, value: lets_go and value > END)
     with pytest.raises(StoppedError) as stopped:
-        _arrive(march, Course(0, 1.0), 1.0, watched=True)
+        _step_to(march, Course(0, 1.0), 1.0, watched=True)
     assert stopped.value.ending is Ending.BRANCH_ENDS
     (begun,) = followed
     return begun

@@ -24,7 +24,7 @@ from comparisons.answer_file import packed, unpacked
 from comparisons.audit import audit
 from cprbm_scene import Ending, Scene
 from fea_reference import Settings, answer
-from fea_reference.upright import upright
+from fea_reference.upright import shear_layers
 from tests.fea_reference.on_an_edge import scene_of
 
 STOUT = 0.07
@@ -157,12 +157,12 @@ def test_with_less_shear_the_contact_bears_what_it_does_in_bending():
 
 
 def test_only_what_is_held_on_what_it_may_touch_stands_upright():
-    assert upright(on_circle(STOUT, 0.01), "beam") == pytest.approx((layer(STOUT), 0.0))
+    assert shear_layers(on_circle(STOUT, 0.01), "beam") == pytest.approx((layer(STOUT), 0.0))
     both = on_its_like(STOUT, 0.01)
-    assert upright(both, "beam") == upright(both, "other") == pytest.approx((layer(STOUT), 0.0))
+    assert shear_layers(both, "beam") == shear_layers(both, "other") == pytest.approx((layer(STOUT), 0.0))
     plain = on_circle(STOUT, 0.01).model_dump()
     plain["contacts"]["edge"]["radius"] -= 0.2 * STOUT
-    assert upright(Scene.model_validate(plain), "beam") == (0.0, 0.0)
+    assert shear_layers(Scene.model_validate(plain), "beam") == (0.0, 0.0)
 
 
 def on_a_block(scene, stepped=()):
@@ -186,13 +186,13 @@ def on_a_block(scene, stepped=()):
 def test_what_drives_hold_where_it_is_is_as_good_as_the_ground(scene):
     own = scene(STOUT, 1.07 * KAPPA, 1.13 * KAPPA)
     held = on_a_block(own)
-    assert upright(held, "beam") == upright(own, "beam") == pytest.approx((layer(STOUT), 0.0))
+    assert shear_layers(held, "beam") == shear_layers(own, "beam") == pytest.approx((layer(STOUT), 0.0))
     assert found(held, 20) == pytest.approx(found(own, 20), rel=1e-7, abs=1e-9 * KAPPA)
 
 
 @pytest.mark.parametrize("stepped", ["across", "beside", "turn"])
 def test_what_a_stage_moves_is_not(stepped):
-    assert upright(on_a_block(on_circle(STOUT, 0.01), [stepped]), "beam") == (0.0, 0.0)
+    assert shear_layers(on_a_block(on_circle(STOUT, 0.01), [stepped]), "beam") == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("unit", [1.3e-6, 1.0, 1.7e5])
@@ -207,7 +207,7 @@ def test_an_end_is_held_on_a_curved_edge_in_whatever_units(unit, gap, held):
     edge = {"kind": "beam-function", "beam": "beam", "body": "ground", "axis": "y", "side": "above"}
     edge |= {"coefficients": (low, 0.0, -0.5 * KAPPA / unit), "range": (-0.3 * unit, 1.4 * unit)}
     plain["contacts"] = {"edge": edge}
-    assert upright(Scene.model_validate(plain), "beam") == pytest.approx((unit * held, 0.0))
+    assert shear_layers(Scene.model_validate(plain), "beam") == pytest.approx((unit * held, 0.0))
 
 
 @pytest.mark.parametrize("scene", [on_circle, on_its_like])

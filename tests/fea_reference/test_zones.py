@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from fea_reference.hermite import NeutralLine
-from fea_reference.zones import Gap, Survey, negative, seen
+from fea_reference.zones import Gap, Survey, negative, survey_pair
 
 
 def gap_of(f):
@@ -92,7 +92,7 @@ def test_a_gap_is_seen_as_far_as_the_other_beam_reaches(sense):
         )
 
     first, second = level(0.0, 2.0, 0.3, 12), level(0.53, 1.63, 0.0, 7)
-    found = seen(first, second, sense, 0.01)
+    found = survey_pair(first, second, sense, 0.01)
     assert found.least == pytest.approx(0.29, rel=1e-14)
     ends = found.zeta[[0, -1]] * 2.0 / 12
     assert (ends if sense > 0.0 else 2.0 - ends[::-1]) == pytest.approx([0.53, 1.63], rel=1e-12)

@@ -104,7 +104,7 @@ def test_each_solver_works_within_it(room, monkeypatch):
         raise StoppedError
 
     firsts = {"cprbm.results.stations": "assembled", "fea_reference.solve": "assemble_ends"}
-    monkeypatch.setattr(module, firsts.get(room, "leave_stage"), stop)
+    monkeypatch.setattr(module, firsts.get(room, "reset_step"), stop)
     with pytest.raises(StoppedError):
         ready.answer()
     assert seen == [[True]]

@@ -8,7 +8,7 @@ import numpy as np
 import fea_reference
 from comparisons.cases import opened
 from fea_reference import solid
-from fea_reference.solid.passing import crossed
+from fea_reference.solid.passing import lines_cross_on_way
 
 
 def at_last(name):
@@ -58,5 +58,5 @@ def test_the_gripper_at_full_load_moves_as_the_shear_beams():
 def test_a_line_that_goes_through_anothers_end_is_seen_on_its_way():
     held = np.array([[0.51, 0.0], [1.1, 0.003], [1.9, 0.0]])
     above, below = (np.array([[0.0, y], [0.43, y + 0.004], [1.0, y - 0.02]]) for y in (0.17, -0.13))
-    assert crossed(above, below, held, held)
-    assert not crossed(above, above - [0.0, 0.1], held, held)
+    assert lines_cross_on_way(above, below, held, held)
+    assert not lines_cross_on_way(above, above - [0.0, 0.1], held, held)

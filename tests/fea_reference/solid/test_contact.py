@@ -195,7 +195,7 @@ def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
     found = solid.answer(scene, solid.Settings(elements=20, across=1))
     assert found.completed == any(station.values["floor.force"][0] > 0.0 for station in found.stations)
     # held by looser penalties on the way, it may come to the station, where those that are asked do not hold it
-    said = ("passes through", "cannot be made as stiff as asked")
+    said = ("passes through", "cannot be raised as requested")
     assert found.completed or any(words in found.sentence for words in said)
 
 

@@ -14,7 +14,7 @@ def placed(corners, quadrilaterals):
     return sorted(sorted(map(tuple, one.tolist())) for one in places)
 
 
-@pytest.mark.skipif(meshing.chosen()[0] is plain_rectangle, reason="gmsh and meshio are not there")
+@pytest.mark.skipif(meshing.choose_mesher()[0] is plain_rectangle, reason="gmsh and meshio are not there")
 def test_gmsh_cuts_the_same_quadrilaterals_and_says_nothing(capfd):
     along = np.array([0.0, 0.11, 0.2, 0.47, 0.8, 1.0])
     assert placed(*meshing.by_gmsh(along, 3)) == placed(*plain_rectangle(along, 3))
