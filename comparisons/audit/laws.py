@@ -302,15 +302,18 @@ def _holding(scene: Scene, of: str) -> list[str]:
 
 
 def _energies(state: StationState) -> tuple[float, float, float]:
-    """Strain energy, work of the loads, and the energy that an even curvature of elements leaves out, J."""
+    """Strain energy, work of the loads, and the energy that an even state of elements leaves out, J."""
     strain = even = 0.0
     for name, beam in state.beams.items():
         s, ds = gauss(np.unique(np.concatenate((beam.state.s, state.on[name]["s"]))))  # M may step at a load
         N, Q, M = (np.interp(s, beam.state.s, of) for of in (beam.state.N, beam.state.Q, state.unbalance(name)))
         EI, EA, GA = beam.stiffness(s)
-        density = (M + state.beyond(name, s)[1]) ** 2 / EI + N**2 / EA * (state.kinematics != "bending")
-        strain += 0.5 * float((density + Q**2 / GA * (state.kinematics == "shear")) @ ds)
-        even += beam.h**2 * float((Q**2 / (24.0 * EI)) @ ds)
+        stretch, slip = (state.kinematics != "bending") / EA, (state.kinematics == "shear") / GA
+        strain += 0.5 * float(((M + state.beyond(name, s)[1]) ** 2 / EI + stretch * N**2 + slip * Q**2) @ ds)
+        # a load along the beam steps N between two stated places
+        even += beam.h * float(
+            (beam.h * Q**2 / (24.0 * EI)) @ ds + stretch.max() * np.sum(np.diff(beam.state.N) ** 2) / 3.0
+        )
     return strain, sum(state.values[load] * state.load(load)[1] for load in state.scene.loads), even
 
 

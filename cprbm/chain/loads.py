@@ -34,18 +34,20 @@ def unit_force(m: Mechanism, beam: str, direction: Direction, at: float, weights
 
 
 def hidden_flexibility(m: Mechanism) -> Array:
-    """Flexibility (rows, rows) of loads at places of beams, less the flexibility of the chains.
+    """Flexibility (2 rows, 2 rows) of loads across and of forces along beams at places, less that of the chains.
 
     A straight cantilever has the moments (a − s)^p and the shear forces p before the place a of a load, p = 0 for a
-    moment and 1 for a force, and the flexibility ∫ (M M′/EI + Q Q′/GA_s) ds.
+    moment and 1 for a force, and the flexibility ∫ (M M′/EI + Q Q′/GA_s) ds.  Along the beam a force has ∫ N N′/EA ds.
     """
-    hidden = np.zeros((len(m.rows), len(m.rows)))
+    hidden = np.zeros((2, len(m.rows), 2, len(m.rows)))
     loads = [(number, row.unit_load) for number, row in enumerate(m.rows) if row.unit_load is not None]
     for i, one in loads:
         for j, other in loads:
             if one.beam == other.beam:
-                hidden[i, j] = _hidden(m.chains[one.beam], one, other)
-    return hidden
+                chain = m.chains[one.beam]
+                hidden[0, i, 0, j] = _hidden(chain, one, other)
+                hidden[1, i, 1, j] = _of_forces(chain, one, other, chain.stretch)
+    return hidden.reshape(2 * len(m.rows), -1)
 
 
 def hidden_angles(chain: BeamChain, s: Array, load: UnitLoad) -> Array:
@@ -59,8 +61,7 @@ def hidden_angles(chain: BeamChain, s: Array, load: UnitLoad) -> Array:
 
 def _hidden(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
     """Flexibility of two unit loads, less the flexibility of the chain."""
-    at, compliance = min(one.at, other.at), chain.shear * chain.link_length
-    exact = one.power * other.power * np.interp(at, chain.arcs, np.append(0.0, np.cumsum(compliance)))
+    at, exact = min(one.at, other.at), _of_forces(chain, one, other, chain.shear)
     if at > 0.0:
         exact += chain.flexibility(
             np.append(chain.borders[chain.borders < at], at),
@@ -68,6 +69,11 @@ def _hidden(chain: BeamChain, one: UnitLoad, other: UnitLoad) -> float:
         ).sum()
     mixed = one.moments * (other.shear[:-1] + other.shear[1:]) + other.moments * (one.shear[:-1] + one.shear[1:])
     bent = one.moments @ (other.moments / chain.stiffness) - 0.5 * chain.skew @ mixed
-    return float(
-        exact - bent - (chain.lean * chain.link_length + chain.half_lean + compliance) @ (one.shear * other.shear)
-    )
+    return float(exact - bent - (chain.lean * chain.link_length + chain.half_lean) @ (one.shear * other.shear))
+
+
+def _of_forces(chain: BeamChain, one: UnitLoad, other: UnitLoad, compliance: Array) -> float:
+    """Flexibility of two unit forces by a compliance (links,) of the links, less the flexibility of the chain."""
+    gives = compliance * chain.link_length
+    exact = np.interp(min(one.at, other.at), chain.arcs, np.append(0.0, np.cumsum(gives)))
+    return float(one.power * other.power * exact - gives @ (one.shear * other.shear))

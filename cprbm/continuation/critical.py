@@ -180,8 +180,16 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
     zero = _vanishes(lambda solved: softest(solved).curvature ** (2.0 if fold else 1.0), earlier, last)
     if not zero - last.t <= NEAR * width:
         return None
-    loss = Loss.FOLD if fold else Loss.BIFURCATION
-    return CriticalPoint(zero, width, loss, "", last.solved, last.solved, mode.curvature, mode.curvature)
+    return CriticalPoint(
+        zero,
+        width,
+        Loss.FOLD if fold else Loss.BIFURCATION,
+        "",
+        last.solved,
+        last.solved,
+        mode.curvature,
+        mode.curvature,
+    )
 
 
 def _along(solved: Solved, mode: Mode, change: Array) -> float:

@@ -171,6 +171,5 @@ def jumped(before: Solved, after: Solved, change: Array) -> bool:
     if scale < SMALLEST_WORK or spread < SMALLEST_WORK * scale or largest < SMALLEST_TURN:
         return False
     curved = power_rate(before, change, rates[0]) - power_rate(after, change, rates[1])
-    gained = potential(system, after.state) - potential(system, before.state)
-    missed = gained - 0.5 * (powers[0] + powers[1])
+    missed = potential(system, after.state) - potential(system, before.state) - 0.5 * (powers[0] + powers[1])
     return abs(missed) > OUTSIDE * 0.5 * spread if one_sided else abs(missed - curved / 12.0) > MISSED * 0.5 * spread

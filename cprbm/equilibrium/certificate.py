@@ -45,8 +45,7 @@ SMALLEST_LOAD = 1e-12
 """Force or moment, in units, below which everything counts as unloaded."""
 
 PULL = 1e-9
-"""Moment by which a stop may pull, over the largest moment."""
-
+"""Moment by which a stop may pull, over the largest moment; the floor is larger where a stop bears round-off alone."""
 
 PLACES = 12.0
 """Round-offs of a gap, three, times the weights 1, −2, 1 of three positions in the difference of two moments, four."""
@@ -89,7 +88,7 @@ def certify(
     checks = (
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
         (violation, max(tolerance, LEAST_VIOLATION), Ending.NOT_CERTIFIED, OPEN),
-        (complementarity, PULL, Ending.NOT_CERTIFIED, "a stop or contact pulls or is passed by {:.1e}, allowed {:.1e}"),
+        (complementarity, max(PULL, floor), Ending.NOT_CERTIFIED, "a stop or contact pulls by {:.1e}, allowed {:.1e}"),
         (overlap, OVERLAPS, Ending.BEAMS_CROSSED, "an open contact overlaps by {:.1e} beams, allowed {:.1e}"),
         (bend, LARGEST_BEND, Ending.TURNED_TOO_FAR, BENT),
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
@@ -124,7 +123,7 @@ def _complementarity(solved: Solved, acting: Flags) -> float:
 
 
 def _sizes(system: System, z: Array) -> tuple[float, float, float, float]:
-    """Largest angle of a link, turn of a joint, and share of a link's normal force in 12 EI/h²; largest moment.
+    """Largest angle of a link or body, turn of a joint, and share of a link's normal force in 12 EI/h²; largest moment.
 
     Moments are moments of joints, of forces on their links, and of rows.
     """
@@ -133,7 +132,7 @@ def _sizes(system: System, z: Array) -> tuple[float, float, float, float]:
     turns = np.abs(theta[joints.before + 1] - theta[joints.before] - joints.rest)
     strains = np.abs(system.lean * (x * np.cos(theta) + y * np.sin(theta)))
     moments = [links.length * np.hypot(x, y), joints.stiffness * turns, np.abs(z[system.rows.first :])]
-    largest = (float(each.max()) for each in (np.abs(theta), turns, strains, np.concatenate(moments)))
+    largest = (float(each.max()) for each in (np.abs(z[system.turns]), turns, strains, np.concatenate(moments)))
     return next(largest), next(largest), next(largest), next(largest)
 
 
@@ -148,8 +147,10 @@ def _resultants(solved: Solved) -> tuple[float, float]:
     index, origin = system.arms
     forces = np.array([acting[index], acting[index + 1]])
     x, y = origin.T + np.array([z[index], z[index + 1]])
-    moment = x @ forces[1] - y @ forces[0] + acting[system.turns].sum()
-    return float(np.hypot(*forces.sum(axis=1))), abs(float(moment))
+    return (
+        float(np.hypot(*forces.sum(axis=1))),
+        abs(float(x @ forces[1] - y @ forces[0] + acting[system.turns].sum())),
+    )
 
 
 def contact_measures(solved: Solved) -> tuple[float, float, float]:

@@ -20,7 +20,7 @@ the second derivatives of a place leave the chains' pattern alone:
 By Sylvester's law the left matrix has as many negative eigenvalues as the right matrix, less the negative eigenvalues
 of −R⁻¹ = 1/(F s).  Two places with a shared force have a common column, the sum of both.
 
-A column has entries at the nodes of two pieces, at most six nodes each: it reaches one chain or two.
+A column has entries at the nodes of two pieces, at most six nodes per piece, and reaches a single chain or two chains.
 """
 
 import numpy as np

@@ -107,7 +107,7 @@ def touched_equilibrium(system: System, start: State, iterations: int, springs: 
 
 
 def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
-    """Places of all pairs, those that are kept open included: an open pair must not pass through itself either."""
+    """Places of all pairs, the open pairs included: an open pair must not pass through itself either."""
     return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
 
 

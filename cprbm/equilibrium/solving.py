@@ -177,10 +177,9 @@ def shared_multipliers(solved: Solved) -> Array:
     motions = np.array([balanced_forces(solved, int(row)) for row in rows])
     indices = system.links.first[:, None] + [2, 3]
     direction = np.column_stack([np.cos(z[system.angles]), np.sin(z[system.angles])])
-    weight = np.sqrt(system.links.length)
 
     def stretch(vector: Array) -> Array:
-        return np.asarray(weight * np.einsum("ij,ij->i", vector[indices], direction))
+        return np.asarray(np.sqrt(system.links.length) * np.einsum("ij,ij->i", vector[indices], direction))
 
     share = lstsq(np.array([stretch(each) for each in motions]).T, -stretch(z))[0]
     forces = np.concatenate([indices.ravel(), np.arange(system.rows.first, system.size)])

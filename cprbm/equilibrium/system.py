@@ -29,7 +29,8 @@ class System:
         turns, motions: indices of all angles, and of all angles and displacements, bodies included.
         metric: lengths of the links, the weights of their angles in a mode.
         limits: which rows are stops.
-        hidden: flexibility (rows, rows) of loads at places of beams without the chain's share.
+        hidden: flexibility (2 rows, 2 rows) of loads at places of beams without the chain's share, as of
+            :func:`hidden_forces`.
         lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
         geometry: curves and pairs of the contacts.
@@ -130,17 +131,14 @@ def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
 
 
 def hidden_forces(system: System, z: Array, mu: Array) -> Array:
-    """Multipliers (rows,) of loads at places of beams at a state, of forces the parts across their links."""
-    loads = [row.unit_load for row in system.mechanism.rows]
-    across = [
-        0.0
-        if load is None
-        else 1.0
-        if load.angle < 0
-        else load.direction[1] * np.cos(z[load.angle]) - load.direction[0] * np.sin(z[load.angle])
-        for load in loads
-    ]
-    return np.asarray(across * mu)
+    """Multipliers (2 rows,) of loads at places of beams at a state: across the links, and of forces along the links."""
+    parts = np.array(
+        [
+            0.0 if load is None else 1j if load.angle < 0 else complex(*load.direction) * np.exp(-1j * z[load.angle])
+            for load in (row.unit_load for row in system.mechanism.rows)
+        ]
+    )
+    return np.concatenate([parts.imag * mu, parts.real * mu])
 
 
 def rest_state(system: System) -> State:

@@ -37,7 +37,7 @@ class Samples:
         line: weights (k, N + 2) of the nodes in the positions.
         rest: angles (k,) of the neutral line at rest.
         links, weights: links (k, 4) and weights (k, 4) of their turns in the angles of the sections.
-        hidden: angles (rows, k) under unit loads, less the angles of the chain.
+        hidden: angles (2 rows, k) under unit loads, less the angles of the chain; zero under forces along the beam.
         area, shearing: area of the section and GA_s (k,).
         stress: stress of bending (k,) under the unit moment, E t/(2 EI).
     """
@@ -54,7 +54,7 @@ class Samples:
         self.s = s = np.concatenate([line, *(np.linspace(0.0, chain.length, size) for size in points)])
         self.line, self.rest = chain.line.weights(s), chain.rest_angle(s)
         self.links, self.weights = chain.angle_weights(s)
-        self.hidden = np.zeros((len(m.rows), len(s)))
+        self.hidden = np.zeros((2 * len(m.rows), len(s)))
         for number, row in enumerate(m.rows):
             if row.unit_load is not None and row.unit_load.beam == beam:
                 self.hidden[number] = hidden_angles(chain, s, row.unit_load)
@@ -155,7 +155,7 @@ class View:
 
     @cached_property
     def _hidden_forces(self) -> Array:
-        """Multipliers (rows,) of loads at places of beams, across their links."""
+        """Multipliers (2 rows,) of loads at places of beams, across and along their links."""
         system = self.solved.system
         return hidden_forces(system, self.z, self.z[system.rows.first :])
 

@@ -177,13 +177,15 @@ def test_a_force_on_a_lever():
 
 @pytest.mark.parametrize("links", [10, 40])
 @pytest.mark.parametrize("at", [0.31, 0.5, 0.95])
-def test_the_energy_under_a_small_force_at_a_place_is_that_of_bending_and_shear(at, links):
-    # reference: Π = −F² (a³/3EI + a/GA_s)/2, with A_s = 5/6 A and a slope that vanishes with F
-    data = cantilever_data({"kind": "beam_force", "beam": "beam", "at": at, "direction": [0.0, -1.0]}, [1e-6])
+@pytest.mark.parametrize(("along", "across"), [(0.0, -1e-6), (1.0, 0.0)])
+def test_the_energy_under_a_small_force_at_a_place_is_that_of_all_strains(along, across, at, links):
+    # reference: Π = −(F_n² (a³/3EI + a/GA_s) + F_t² a/EA)/2, with A_s = 5/6 A and a slope that vanishes with F_n
+    load = {"kind": "beam_force", "beam": "beam", "at": at, "direction": [along, across]}
+    data = cantilever_data(load, [float(np.hypot(along, across))])
     data["theory"] = "shear"
     answer = cprbm.answer(scene_from(data), cprbm.Settings(links=links))
     assert answer.completed, answer.sentence
-    a = at * LENGTH
-    shear_stiffness = 5.0 / 6.0 * WIDTH * THICKNESS * MODULUS / (2.0 * 1.31)
-    found = float(answer.stations[-1].values["scene.potential_energy"][0]) / -0.5e-12
-    assert found == pytest.approx(a**3 / (3.0 * RIGIDITY) + a / shear_stiffness, rel=1e-8)
+    a, area = at * LENGTH, WIDTH * THICKNESS
+    bent = a**3 / (3.0 * RIGIDITY) + a / (5.0 / 6.0 * area * MODULUS / (2.0 * 1.31))
+    found = -2.0 * float(answer.stations[-1].values["scene.potential_energy"][0])
+    assert found == pytest.approx(across**2 * bent + along**2 * a / (area * MODULUS), rel=1e-8, abs=0.0)

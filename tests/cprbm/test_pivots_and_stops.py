@@ -47,6 +47,19 @@ def test_a_stop_turns_the_end_by_what_the_wheel_goes_beyond_it(end, towards, sen
     assert beyond["wheel.reaction_moment"] == pytest.approx([sense * 4.0 * turn * MOMENT], rel=2e-3)
 
 
+@pytest.mark.parametrize("theory", ["bending", "shear"])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_station_may_lie_at_the_very_limit_of_a_stop(theory, sense):
+    # reference: the beam is idle up to the limit, on the way there and on the way back
+    play, limit = 0.3, "least" if sense > 0.0 else "most"
+    ways = [[0.5 * play, play, 2.0 * play], [play, 0.0]]
+    scene = wheel(2.0, "start", {limit: -2.0 - sense * play}, [[sense * value for value in way] for way in ways])
+    stations = solved(scene.model_copy(update={"theory": theory})).stations
+    moments = [station.values["stop.moment"][0] for station in stations]
+    assert moments[:2] + moments[3:] == pytest.approx([0.0] * 4, abs=1e-9 * MOMENT)
+    assert moments[2] == pytest.approx(4.0 * play * MOMENT, rel=0.1)
+
+
 def test_a_stop_bends_its_beam_and_does_not_pull_it():
     # reference: a pinned end turned by ψ takes 4 EI ψ/L and gives the clamp 2 EI ψ/L; the shoe slides, so that the beam
     # is pulled by nothing of the first order in ψ
