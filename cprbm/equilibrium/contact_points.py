@@ -7,8 +7,8 @@ After every solve the rule looks at runs of neighbouring closed joints:
 * joints beside a moving place with less than a small part of the force open.  A light joint that closes again and
   again is part of a length: the moving place becomes joints.
 
-The equilibrium is solved again until the rule changes nothing.  Where moving places fail, joints alone are solved first
-and made points anew; then the moving place with the flattest gap is given up.
+The equilibrium is solved again until the rule changes nothing.  Where moving places fail, or would move far at once,
+joints alone are solved first and made points anew; then the moving place with the flattest gap is given up.
 """
 
 from dataclasses import replace

@@ -52,6 +52,7 @@ from cprbm.contact import (
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import SingularError, Springs, factored_border, pulls, solved_border
 from cprbm.equilibrium.iteration import (
+    LONGEST_MOVE,
     arcs_of,
     change_set,
     closable,
@@ -190,8 +191,8 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
             if times > 2 * RETURNS:
                 raise NotConvergedError("the set of closed places returns")
             returned = returned or times > RETURNS or iteration >= FREE_CHANGES
-        if not np.isfinite(size):
-            raise NotConvergedError("the correction is not finite")
+        if not np.isfinite(size) or moved > LONGEST_MOVE:
+            raise NotConvergedError("the correction is not finite, or a point of contact moves far along the beam")
         size = size if moved < ARRIVED else max(size, moved)
         arrived, last = size < CLOSE or SHRINKING * last < size < ROUNDED, size
         if arrived and not changed:

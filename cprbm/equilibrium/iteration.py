@@ -17,7 +17,7 @@ NEARBY = 4.0
 """Pieces around a point contact in which the chain's curve misses the lost compliance."""
 
 LONGEST_MOVE = 2.0
-"""Largest change of a moving place in an iteration, pieces."""
+"""Largest change of a moving place in an iteration, pieces: joints find a place that is farther away."""
 
 
 @compiled
