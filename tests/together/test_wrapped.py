@@ -11,10 +11,9 @@ from comparisons.verdict import Word
 from tests.references.wrapped import Wrapped
 
 
-@pytest.mark.parametrize("links", [41, 80])
-def test_wrapped_agrees(links):
+def test_wrapped_agrees_at_an_odd_number_of_links():
     scene = cases.opened("wrapped")
-    comparison = compare(paired(scene, Choices(links=links), Solvers()))
+    comparison = compare(paired(scene, Choices(links=41), Solvers()))
     assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
 
 
