@@ -30,7 +30,7 @@ def _run(arguments, packages, folder):
     return subprocess.run(
         [sys.executable, "-m", "comparisons", *arguments],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(packages)},
+        env={**os.environ, "PYTHONPATH": str(packages), "NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
         check=False,

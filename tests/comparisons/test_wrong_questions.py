@@ -1,6 +1,7 @@
 """A wrong question: a paragraph with the file, the key, the words found and allowed, and the next step; exit code 2."""
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -110,12 +111,19 @@ SCENES = {
 }
 
 
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("files")
+    assert run(["new", "mine", "--out", str(folder), "--quiet"]) == 0
+    (folder / "mine-hinge.toml").write_text(HINGE, "utf-8")
+    (folder / "bytes.toml").write_bytes(b'name = "\xff"')
+    (folder / "in the way").write_text("", "utf-8")
+    return folder
+
+
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    assert run(["new", "mine", "--out", str(tmp_path), "--quiet"]) == 0
-    (tmp_path / "mine-hinge.toml").write_text(HINGE, "utf-8")
-    (tmp_path / "bytes.toml").write_bytes(b'name = "\xff"')
-    (tmp_path / "in the way").write_text("", "utf-8")
+def folder(files, tmp_path, monkeypatch):
+    shutil.copytree(files, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -192,8 +192,7 @@ def three_noses(stations, thickness=0.5):
     )
 
 
-@pytest.mark.parametrize("links", [20, 40])
-@pytest.mark.parametrize("stations", [[6.0], [1.0, 2.0, 3.0, 6.0], [2.5, 5.0, 6.0]])
+@pytest.mark.parametrize(("stations", "links"), [([6.0], 20), ([1.0, 2.0, 3.0, 6.0], 40), ([2.5, 5.0, 6.0], 20)])
 def test_no_contact_closes_or_opens_unseen_in_a_step(stations, links):
     """Reference: a cantilever under a force at a: w(s)/w(a) = s² (3a − s)/2a³ before a, a straight line behind.
 

@@ -6,6 +6,7 @@ Each program runs in an interpreter of its own, since this one has loaded everyt
 import json
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ assert cprbm.answer(scene_from(cantilever_data(force(0.0, -1.0), [0.1]))).comple
 """
 
 
+@cache
 def loaded(program):
     """Top-level names of all that a program has imported, and every module of SciPy."""
     done = subprocess.run(

@@ -3,6 +3,7 @@
 import tomllib
 from collections import Counter
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,6 +27,12 @@ from tests.robustness.toml import toml_of
 from tests.robustness.whole import assembled, column, lying
 
 COUNTERS = st.integers(0, 2**64 - 1)
+
+
+@cache
+def sample(index):
+    """A scene of the sample on which shares are counted."""
+    return scene_from(drawn(11, index).data)
 
 
 def test_a_scene_depends_on_its_counters_alone():
@@ -77,7 +84,7 @@ def test_as_many_scenes_turn_far_and_touch_as_chance_leaves_of_few():
     # two in five are to turn beyond 60°, seven in ten to touch: two standard deviations less, of twenty-odd
     met, solved = Counter(), 0
     for index in range(24):
-        scene = scene_from(drawn(13, index).data)
+        scene = sample(index)
         found = cprbm_answer(scene, Choices(links=10))
         if found.completed:
             solved += 1
@@ -106,7 +113,7 @@ def test_every_kind_stands_in_some_scenes():
     counted = Counter()
     scenes = 120
     for index in range(scenes):
-        counted.update(strata.stated(scene_from(drawn(11, index).data)))
+        counted.update(strata.stated(sample(index)))
     rare = {kind: counted[kind] for kind in strata.KINDS if counted[kind] < 0.03 * scenes}
     assert rare == {}
     assert all(counted[f"beams: {n}"] for n in (1, 2, 3, 4))

@@ -55,13 +55,12 @@ def test_the_closed_form_meets_the_elastica_without_a_circle_and_a_wide_circle()
     assert drop(100.0, 3.0) == pytest.approx(1.0 / 200.0, abs=1e-6)
 
 
-@pytest.mark.parametrize(("links", "allowed"), [(40, 1e-3), (160, 1e-4)])
-def test_the_radius_for_a_fall_of_half_the_length(tmp_path, links, allowed):
+def test_the_radius_for_a_fall_of_half_the_length(tmp_path):
     (tmp_path / "round.toml").write_text(SCENE, "utf-8")
     (tmp_path / "goal.toml").write_text(GOAL, "utf-8")
     out = tmp_path / "out"
-    options = ["-n", str(links), "--elements", "20", "--starts", "1", "--quiet", "--out", str(out)]
+    options = ["-n", "60", "--elements", "20", "--starts", "1", "--quiet", "--out", str(out)]
     run(["optimise", str(tmp_path / "round.toml"), "--goal", str(tmp_path / "goal.toml"), *options])
     found = json.loads((out / "optimum.json").read_text("utf-8"))
     assert found["goal"]["value"] == pytest.approx(-0.5, abs=1e-4)
-    assert found["parameters"]["rho"] == pytest.approx(radius_of(0.5, 3.0), abs=allowed)
+    assert found["parameters"]["rho"] == pytest.approx(radius_of(0.5, 3.0), abs=1e-4)

@@ -12,7 +12,7 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from comparisons.sweeps.outcome import solve
 from comparisons.sweeps.running import Runner
-from comparisons.sweeps.scatter import indices, study, values_of
+from comparisons.sweeps.scatter import drawn, indices, study, values_of
 from comparisons.sweeps.workers import workers_on
 from cprbm_scene import read
 from tests.sweeps.scenes import CANTILEVER, table
@@ -33,27 +33,41 @@ def scene(tmp_path):
     return path
 
 
-def test_indices_of_a_stiffness_are_the_squares_of_the_exponents(scene):
-    """k = E b t³ / (4 L³) of a tip load in the linear range: ln k has the exponents 1, 1, 3, -3 of four lognormals.
+CENTRES = {"E": 2e9, "b": 0.01, "t": 2e-3, "L": 0.1}
+
+
+def stiffness_of(sample):
+    """ln k of a tip load in the linear range, k = E b t³ / (4 L³), at values (k, 4) of E, b, t and L."""
+    E, b, t, L = sample.T
+    return np.log(E * b * t**3 / (4.0 * L**3))
+
+
+DISTRIBUTIONS = {name: lognorm(0.01, scale=centre) for name, centre in CENTRES.items()}
+
+
+def test_indices_of_a_stiffness_are_the_squares_of_the_exponents():
+    """ln k has the exponents 1, 1, 3, -3 of four lognormals.
 
     With equal deviations the indices are the squares of the exponents over their sum: 1/20, 1/20, 9/20, 9/20.
     """
-    question = read(scene).with_parameters(P=1e-3)
-    centres = {name: question.parameters[name].value for name in "EbtL"}
-    distributions = {name: lognorm(0.01, scale=centre) for name, centre in centres.items()}
-    choices = Choices(links=4)
-    asked = study(question, distributions, 256, "cprbm", choices, indexed=True)
-    with workers_on("local:2") as workers:
-        scatter = replace(asked, sweep=Runner(workers, choices, Solvers(), 60.0).run(asked.sweep))
-    (deflection,) = [each for each in scatter.scattering() if each.component == "y"]
-    stiffness = np.log(1e-3 / scatter.rows(deflection))
-    assert stiffness.shape == (6, 256)
-    found = indices(stiffness)
-    for part in found:
+    design = drawn(DISTRIBUTIONS, 256, indices=True)
+    for part in indices(stiffness_of(design).reshape(6, 256)):
         for interval, exact in zip(part, (1 / 20, 1 / 20, 9 / 20, 9 / 20), strict=True):
             assert interval.low <= exact <= interval.high
             assert interval.high - interval.low < 0.3
-    mean = values_of(deflection, scatter.standing).mean()
+
+
+def test_rows_of_a_scatter_are_the_closed_form_at_the_points_of_the_design(scene):
+    question, choices = read(scene).with_parameters(P=1e-3), Choices(links=4)
+    asked = study(question, DISTRIBUTIONS, 16, "cprbm", choices, indexed=True)
+    with workers_on("local:1") as workers:
+        solved = replace(asked, sweep=Runner(workers, choices, Solvers(), 60.0).run(asked.sweep))
+    (deflection,) = [each for each in solved.scattering() if each.component == "y"]
+    stiffness = np.log(1.0 / solved.rows(deflection))  # 1 mN over millimetres, in N/m
+    exact = stiffness_of(drawn(DISTRIBUTIONS, 16, indices=True))
+    np.testing.assert_allclose(stiffness, exact.reshape(6, 16), atol=1e-3)
+    assert solved.indices(deflection) == indices(solved.rows(deflection))
+    mean = values_of(deflection, solved.standing).mean()
     assert mean == pytest.approx(1e-3 * 4.0 * 100.0**3 / (2000.0 * 10.0 * 2.0**3), rel=1e-2)
 
 
@@ -110,7 +124,7 @@ def test_failing_points_are_counted(scene, tmp_path):
         (["--limits", "LIMITS"], "limits[0].probe"),
         (["--limits", "absent.toml"], "No such file"),
         (["--on", "remote"], "local:N"),
-        (["--set", "t=2.99mm"], "without a valid scene"),
+        (["--samples", "16", "--set", "t=2.99mm"], "without a valid scene"),
     ],
 )
 def test_a_wrong_question_is_a_sentence(scene, tmp_path, capsys, options, said):

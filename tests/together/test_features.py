@@ -13,7 +13,7 @@ import cprbm
 import elastica_reference
 import fea_reference
 from comparisons.verdict.point_forces import away_from_point_forces
-from cprbm_scene import Answer, SceneError, SelfContact, scene_from
+from cprbm_scene import Answer, Scene, SceneError, SelfContact, scene_from
 from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import STRESSES
 from fea_reference import solid
@@ -29,8 +29,13 @@ NAMES = [f"{feature.group}: {feature.said}: {solver}" for feature, solver in CEL
 
 
 @cache
+def scene_of(number: int) -> Scene:
+    return scene_from(FEATURES[number].data)
+
+
+@cache
 def answered(number: int, solver: str) -> Answer:
-    scene = scene_from(FEATURES[number].data)
+    scene = scene_of(number)
     if solver == "solid":
         coarse = scene.contacts and not any(probe.quantity in STRESSES for probe in scene.probes)
         rolled = any(isinstance(contact, SelfContact) for contact in scene.contacts.values())
@@ -83,7 +88,7 @@ def compared(
     of, quantity = name.split(".")
     if solver != "solid" or quantity not in STRESSES:
         return np.ones(value.shape, dtype=bool)
-    scene = scene_from(feature.data)
+    scene = scene_of(FEATURES.index(feature))
     s = np.linspace(0.0, shape_of(scene.beams[of].curve).length, value.size)
     return away_from_point_forces(scene, of, s, (answer.stations[-1], reference.stations[-1]))
 

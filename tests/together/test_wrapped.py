@@ -6,15 +6,14 @@ import pytest
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.pairing import Solvers, paired
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import Word
 from tests.references.wrapped import Wrapped
 
 
-@pytest.mark.parametrize("links", [41, 80])
-def test_wrapped_agrees(links):
+def test_wrapped_agrees_at_an_odd_number_of_links():
     scene = cases.opened("wrapped")
-    comparison = compare(paired(scene, Choices(links=links), Solvers()))
+    comparison = compare(paired(scene, Choices(links=41), Solvers()))
     assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
 
 
@@ -23,8 +22,9 @@ def test_line_pressure_and_lift_off_follow_from_force_and_zone():
     # lift-off, whose parts no probe tells: p from the clamp's reaction (tension over radius), the other from it
     # The chain has the zone's end between two joints: 1.2e-4 m with nine joints in the zone, 1e-5 m with more.
     scene = cases.opened("wrapped")
-    runs = paired(scene, Choices(kinematics="bending"), Solvers())
-    for answer, share in ((runs.answers["cprbm"], 1.0 / 700.0), (runs.answers["fea"], 1e-4)):
+    for solve, share in ((cprbm_answer, 1.0 / 700.0), (fea_answer, 1e-4)):
+        answer = solve(scene, Choices(kinematics="bending"))
+        assert answer.completed, answer.sentence
         for station in answer.stations:
             reference = Wrapped(0.0973, 0.0711, 0.00103, 0.0097, 2.07e11, station.value)
             if not reference.wrapped:
