@@ -132,11 +132,10 @@ def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
 
 def hidden_forces(system: System, z: Array, mu: Array) -> Array:
     """Multipliers (2 rows,) of loads at places of beams at a state: across the links, and of forces along the links."""
-    loads = [row.unit_load for row in system.mechanism.rows]
     parts = np.array(
         [
             0.0 if load is None else 1j if load.angle < 0 else complex(*load.direction) * np.exp(-1j * z[load.angle])
-            for load in loads
+            for load in (row.unit_load for row in system.mechanism.rows)
         ]
     )
     return np.concatenate([parts.imag * mu, parts.real * mu])

@@ -82,8 +82,10 @@ def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
     Joints of two moving parts exert opposite forces on the parts, and cancel.
     """
     view, scene = statics.view, statics.view.scene
-    drives = scene.drives.items()
-    held = {name: drive.point if isinstance(drive, DisplacementDrive) else drive.body for name, drive in drives}
+    held = {
+        name: drive.point if isinstance(drive, DisplacementDrive) else drive.body
+        for name, drive in scene.drives.items()
+    }
     held |= {name: getattr(scene.beams[stop.beam], stop.end).point for name, stop in scene.stops.items()}
     held |= {name: of for name, pin in scene.pins.items() if of in pin.points}
     sources = {of, *(name for name, part in held.items() if part == of)}
