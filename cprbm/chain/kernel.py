@@ -6,7 +6,7 @@ symbol     meaning
 θ_j        angle of link j; e_j unit vector at θ_j, e′_j its quarter turn
 n_j        force in link j; N = n·e, Q = n·e′
 p_j        position of node j
-L, c, s    length of a link, compliances 1/EA and 1/GA_s + β
+L, c, s    length of a link, compliances 1/EA and 1/GA_s
 d_i        elastic turn of joint i: θ_{i+1} − θ_i less the turn at rest
 b, k, m    turn of the neutral line along the element at rest, stiffness of the joint, first moment of flexibility
 h, κ       length of an element, curvature; κ₀ at rest
@@ -14,19 +14,19 @@ h, κ       length of an element, curvature; κ₀ at rest
 
 **The link.**  A link is a spring with a compliance.  With the force n as an unknown its Lagrangian is
 
-    n·(p_{j+1} − p_j − L e) − L/2 (c N² + s Q²).
+    n·(p_{j+1} − p_j − L e) − L/2 (c N² + s Q² + β Q² r²),    r = 1 − (s − c) N.
 
-The derivative by n is the link equation p_{j+1} − p_j = L (e + c N e + s Q e′), the derivative by p the balance of
-forces.  With c = s = 0 the links are rigid: the chain of the paper, in the same unknowns.
+The derivative by n is the link equation, without β p_{j+1} − p_j = L (e + c N e + s Q e′), the derivative by p the
+balance of forces.  With c = s = β = 0 the links are rigid: the chain of the paper, in the same unknowns.
 
 **The joint.**  The plain joint has the energy k d²/2.  Three corrections make the chain one of fourth order:
 
-1. In an element the moment is M_i − Q σ, σ measured from the middle.  Its even part bends the joint.  The odd part has
-   the energy Q² h³/(24 EI), a shear compliance β = h²/(12 EI) of the links.
+1. In an element the moment is M_i − Q r σ, σ measured from the middle, for the line of Reissner's beam gives N an arm.
+   Its even part bends the joint.  The odd part has the energy Q² r² h³/(24 EI), β = h²/(12 EI) of the links.
 2. An element of the curvature κ has its nodes at C − κ h²/8 of the curve.  The polygon of a strained element is longer
    than at rest by h³(κ² − κ₀²)/12.  With d = h(κ − κ₀) and b = hκ₀ that is h d(d + 2b)/12, half of it on either side:
 
-       − d(d + 2b)/12 · S,    S = a₋ N₋ + a₊ N₊,    a half an inner link, or a whole end link.
+       − d(d + 2b)/12 · S,    S = a₋ N₋ r₋ + a₊ N₊ r₊,    a half an inner link, or a whole end link.
 
 3. Where EI varies along the element, the odd part of the moment turns the joint by m Q, with the first moment m of the
    flexibility.  With D = d + m(Q₋ + Q₊)/2 the energy is k D²/2 in this mixed form.
@@ -39,6 +39,7 @@ then turns them to the unknowns by dN = e·dn + Q dθ and dQ = e′·dn − N d�
 
 **Energy.**  At a solution the Lagrangian equals the potential energy.  Terms linear in n vanish with the link
 equations; quadratic terms change sign: Σ k d²/2 − ½ Σ [N (F_N − F_N⁰) + Q (F_Q − F_Q⁰)], the zero without forces.
+The term T of β becomes T − n·∂T/∂n.
 """
 
 from math import cos, sin
@@ -52,12 +53,13 @@ from cprbm_scene.answer import Array, Ints
 
 
 class Links(NamedTuple):
-    """Links of all beams: ``first`` index of p_j; lengths; compliances c and s."""
+    """Links of all beams: ``first`` index of p_j; lengths; compliances c and s; β."""
 
     first: Ints
     length: Array
     stretch: Array
     shear: Array
+    lean: Array
 
 
 class Joints(NamedTuple):
@@ -98,7 +100,8 @@ def link_arrays(m: Mechanism) -> tuple[Links, Joints]:
         first.astype(np.int64),
         np.concatenate([chain.link_length for chain in chains]),
         np.concatenate([chain.stretch for chain in chains]),
-        np.concatenate([chain.shear + chain.lean for chain in chains]),
+        np.concatenate([chain.shear for chain in chains]),
+        np.concatenate([chain.lean for chain in chains]),
     )
     offsets = np.cumsum([0, *(chain.links for chain in chains)])
     joints = Joints(
@@ -117,18 +120,19 @@ def link_arrays(m: Mechanism) -> tuple[Links, Joints]:
 
 @compiled
 def _partials_of_links(z: Array, links: Links) -> Array:  # pragma: no cover
-    """F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ of the links alone (links, 9)."""
-    force, angle, x, y = np.zeros((links.length.size, 9)), z[links.first + 4], z[links.first + 2], z[links.first + 3]
+    """F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ, r and s − c of the links alone (links, 11)."""
+    force, angle, x, y = np.zeros((links.length.size, 11)), z[links.first + 4], z[links.first + 2], z[links.first + 3]
     a, b = np.cos(angle), np.sin(angle)
-    N, Q, L, c, s = x * a + y * b, y * a - x * b, links.length, links.stretch, links.shear
+    N, Q, L, c, s, beta = x * a + y * b, y * a - x * b, links.length, links.stretch, links.shear, links.lean
+    r, arm = 1.0 - (s - c) * N, s - c
     force[:, 0], force[:, 1], force[:, 2], force[:, 3], force[:, 4] = (
-        -L * (1.0 + c * N),
-        -L * s * Q,
-        -L * c,
-        0.0,
-        -L * s,
+        -L * (1.0 + c * N - beta * Q * Q * r * arm),
+        -L * (s + beta * r * r) * Q,
+        -L * (c + beta * (Q * arm) ** 2),
+        L * 2.0 * beta * Q * r * arm,
+        -L * (s + beta * r * r),
     )
-    force[:, 5], force[:, 6], force[:, 7], force[:, 8] = N, Q, a, b
+    force[:, 5], force[:, 6], force[:, 7], force[:, 8], force[:, 9], force[:, 10] = N, Q, a, b, r, arm
     return force
 
 
@@ -148,9 +152,8 @@ def _partials_of_joints(
         k, b, m = joints.stiffness[i], joints.bend[i], 0.5 * joints.skew[i]
         before, behind = joints.growth_before[i], joints.growth_behind[i]
         D = d + m * (left[6] + right[6])
-        S = before * left[5] + behind * right[5]
+        S = before * left[5] * left[9] + behind * right[5] * right[9]
         grown, slope = d * (d + 2.0 * b) / 12.0, (d + b) / 6.0
-        corrected = before != 0.0
         cross[i] = k * m * m
         of[0], of[1] = k * D, k
         of[2], of[3], of[4], of[5] = 0.0, k * m, 0.0, k * m
@@ -158,13 +161,15 @@ def _partials_of_joints(
         right[1] += k * D * m
         left[4] += k * m * m
         right[4] += k * m * m
-        if corrected:
+        if before != 0.0:
             of[0] -= slope * S
             of[1] -= S / 6.0
-            of[2] -= slope * before
-            of[4] -= slope * behind
-            left[0] -= grown * before
-            right[0] -= grown * behind
+            of[2] -= slope * before * (2.0 * left[9] - 1.0)
+            of[4] -= slope * behind * (2.0 * right[9] - 1.0)
+            left[0] -= grown * before * (2.0 * left[9] - 1.0)
+            right[0] -= grown * behind * (2.0 * right[9] - 1.0)
+            left[2] += 2.0 * grown * before * left[10]
+            right[2] += 2.0 * grown * behind * right[10]
         if joints.half_before[i] != 0.0:
             _add_half(left, of, 2, joints.half_before[i], 0.25, d)
         if joints.half_behind[i] != 0.0:
@@ -251,15 +256,15 @@ def _turn_joint(
 
 def strain_energy(z: Array, links: Links, joints: Joints) -> float:
     """Energy of joints and links at a solution of the link equations."""
-    unloaded, angle = z.copy(), z[links.first + 4]
+    unloaded, turns = z.copy(), np.diff(z[links.first + 4])[joints.before] - joints.rest
     unloaded[links.first + 2], unloaded[links.first + 3] = 0.0, 0.0
     force, free = _partials_of_links(z, links), _partials_of_links(unloaded, links)
     N, Q = force[:, 5], force[:, 6]
-    stored = -force[:, 2] * N * N - force[:, 4] * Q * Q
+    leaning = links.lean * force[:, 9] * (3.0 * force[:, 9] - 2.0)
+    stored = links.length * (links.stretch * N * N + (links.shear + leaning) * Q * Q)
     # the links' own forces at rest would cover the small parts of the joints by round-off
     force[:, :2] = free[:, :2] = 0.0
     _partials_of_joints(z, links, joints, force)
     _partials_of_joints(unloaded, links, joints, free)
-    turn = angle[joints.before + 1] - angle[joints.before] - joints.rest
     stored -= N * (force[:, 0] - free[:, 0]) + Q * (force[:, 1] - free[:, 1])
-    return 0.5 * float((joints.stiffness * turn**2).sum() + stored.sum())
+    return 0.5 * float(joints.stiffness @ turns**2 + stored.sum())

@@ -297,8 +297,15 @@ def _closing(
     if end[0] > 0.0:
         return []
     share = located_by_slopes(gap, end)
-    early = min(share, CLOSED / max(-slopes[share], CLOSED))
-    return [Change(share, pairs=apart, closes=True, first=first[share], early=early)]
+    return [
+        Change(
+            share,
+            pairs=apart,
+            closes=True,
+            first=first[share],
+            early=min(share, CLOSED / max(-slopes[share], CLOSED)),
+        )
+    ]
 
 
 def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[Change]:

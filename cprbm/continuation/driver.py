@@ -273,8 +273,11 @@ class Driver:
         beam, longer = locked_beam(solved, way.change)
         limit = taut_value(trail, way, t)
         if limit is not None:
-            where = f"forces grow without limit as {way.name} comes to {limit:.6g}"
-            raise StepError(Ending.STEP_TOO_SMALL, f"{where}, where beams would have to become longer")
+            raise StepError(
+                Ending.STEP_TOO_SMALL,
+                f"forces grow without limit as {way.name} comes to {limit:.6g}, where beams would have to become "
+                "longer",
+            )
         if not beam:
             raise refused
         if longer > -ASKED:

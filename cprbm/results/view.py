@@ -131,8 +131,9 @@ class View:
         """Angles (k,) of the sections at a beam's samples, with the flexibility beside loads at places of the beam."""
         samples = self.samples[beam]
         turns = self.z[self.mechanism.beam_angles(beam)] - samples.chain.link_angle
-        turned = (samples.weights * turns[samples.links]).sum(axis=1)
-        return np.asarray(samples.rest + turned - self._hidden_forces @ samples.hidden)
+        return np.asarray(
+            samples.rest + (samples.weights * turns[samples.links]).sum(axis=1) - self._hidden_forces @ samples.hidden
+        )
 
     @cached_property
     def multipliers(self) -> dict[str, float]:

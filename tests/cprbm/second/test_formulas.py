@@ -24,12 +24,13 @@ def lagrangian(system, state):
     e = np.column_stack([np.cos(theta), np.sin(theta)])
     left = np.column_stack([-np.sin(theta), np.cos(theta)])
     N, Q = (n * e).sum(axis=1), (n * left).sum(axis=1)
-    L = links.length
-    total = ((n * (behind - p)).sum(axis=1) - L * N - 0.5 * L * (links.stretch * N**2 + links.shear * Q**2)).sum()
+    L, r = links.length, 1.0 - (links.shear - links.stretch) * N
+    strained = links.stretch * N**2 + links.shear * Q**2 + links.lean * (Q * r) ** 2
+    total = ((n * (behind - p)).sum(axis=1) - L * N - 0.5 * L * strained).sum()
     j, i = joints.before, joints.before + 1
     d = theta[i] - theta[j] - joints.rest
     D = d + 0.5 * joints.skew * (Q[j] + Q[i])
-    grown = d * (d + 2.0 * joints.bend) / 12.0 * (joints.growth_before * N[j] + joints.growth_behind * N[i])
+    grown = d * (d + 2.0 * joints.bend) / 12.0 * (joints.growth_before * (N * r)[j] + joints.growth_behind * (N * r)[i])
     total += (0.5 * joints.stiffness * D**2 - grown).sum()
     for link, sense, weight in ((j, 1.0, joints.half_before), (i, -1.0, joints.half_behind)):
         angle = theta[link] + 0.25 * sense * d
