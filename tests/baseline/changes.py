@@ -110,7 +110,7 @@ def _details(
     if before["outcome"] != "answered" or after["outcome"] != "answered":
         yield from _outcomes(before, after)
         return
-    yield from _critical_points(before, after)
+    yield from _critical_points(before, after, same)
     if before["solver"] == "comparison":
         if before["verdict"] != after["verdict"]:
             yield Change.WORD, f"{before['verdict']} before, {after['verdict']} now: {after['sentence']}"
@@ -182,7 +182,7 @@ def _rows(before: Entry, after: Entry, same: float, improved: Collection[str]) -
                 yield change, f"{where}: {part} states {states / scale:.2g} of the scale, {bound / scale:.2g} before"
 
 
-def _critical_points(before: Entry, after: Entry) -> Iterator[Detail]:
+def _critical_points(before: Entry, after: Entry, same: float) -> Iterator[Detail]:
     old, new = before["critical"], after["critical"]
     if [(each["stage"], each["kind"]) for each in old] != [(each["stage"], each["kind"]) for each in new]:
         yield Change.BEYOND, f"critical points: {_kinds(old)} before, {_kinds(new)} now"
@@ -191,7 +191,7 @@ def _critical_points(before: Entry, after: Entry) -> Iterator[Detail]:
         if "load" not in was:
             continue
         moved = abs(was["load"] - now["load"])
-        if not moved <= SAME * abs(was["load"]):
+        if not moved <= same * abs(was["load"]):
             sentence = f"the critical load of stage {was['stage']} is {now['load']:.8g}, {was['load']:.8g} before"
             yield _moved(moved, was["uncertainty"]), sentence
 
