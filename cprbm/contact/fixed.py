@@ -158,7 +158,7 @@ def places_at_feet(
         places.side[k] = 0.0 if corner else sides[pair, int(curve != sites.columns[pair, 0])]
         kept[k] &= curve != other or foot >= piece or behind == 0
         for end, links, last in ((0, before, curves.first[other]), (1, behind, curves.last[other])):
-            if is_on_end_body(curves, sites, places, k, end):
+            if (corner or links <= 1) and is_on_end_body(curves, sites, places, k, end):
                 # a corner is no place in an end link held by the corner's body
                 at_weld = links == 0 and not (sites.welded[curve, end] and pressed[other])
                 kept[k] &= foot != last if corner else not at_weld
@@ -168,25 +168,18 @@ def places_at_feet(
 
 
 @compiled
-def is_fixed(curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
-    """True for joints, ends and corners."""
-    return bool(not places.moves[k] or curves.angle[places.piece[k]] < 0)
-
-
-@compiled
 def matched(curves: CurveArrays, places: Places, others: Places) -> Ints:  # pragma: no cover
-    """Numbers of the same fixed places among ``others``, −1 without."""
+    """Numbers of the same joints, ends and corners among ``others``, −1 without."""
     found, at, count = np.full(places.piece.size, -1), 0, others.piece.size
     for k in range(places.piece.size):
-        if not is_fixed(curves, places, k):
+        if places.moves[k] and curves.angle[places.piece[k]] >= 0:
             continue
         for step in range(count):
-            j = (at + step) % count
+            j = at + step - (count if at + step >= count else 0)
             if (
                 places.pair[k] == others.pair[j]
                 and places.curve[k] == others.curve[j]
                 and places.moves[k] == others.moves[j]
-                and is_fixed(curves, others, j)
                 and (places.moves[k] or (places.piece[k] == others.piece[j] and places.xi[k] == others.xi[j]))
             ):
                 found[k], at = j, j + 1
