@@ -132,7 +132,7 @@ class FittedLaw:
 
     def measures(self, places: Places) -> Flags:
         """Places of the law's pairs."""
-        return np.isin(places.pair, list(self.boundaries))
+        return np.asarray((places.pair[:, None] == np.array(list(self.boundaries))).any(axis=1))
 
     def write_gaps(self, z: Array, places: Places, gaps: Array) -> None:
         """Write the gaps of the law's places at a state; a foot on a fitted boundary is no point."""
