@@ -6,9 +6,10 @@ process, and a wrong file may end the process: gmsh reads in a process of its ow
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import shapely
@@ -21,7 +22,15 @@ _BEGIN = 4096
 """Bytes of a file that decide on the format."""
 
 _ON_CURVE, _ON_ARC = 2001, 61
-"""Places along a curve of gmsh, and along an arc, whose fitted circle has a relative error of round-off."""
+"""Places along a curve, and along an arc, whose fitted circle has a relative error of round-off."""
+
+_PLACES: dict[str, Callable[[Any], Iterable[Iterable[float]]]] = {
+    "LINE": lambda line: (line.dxf.start, line.dxf.end),
+    "ARC": lambda arc: arc.vertices(arc.angles(_ON_ARC)),
+    "ELLIPSE": lambda ellipse: ellipse.vertices(ellipse.params(_ON_CURVE)),
+    "SPLINE": lambda spline: spline.construction_tool().approximate(_ON_CURVE - 1),
+}
+"""Places along the curves of a DXF drawing by the kind of the entity."""
 
 _UNITS = {1: "in", 4: "mm", 5: "cm", 6: "m", 13: "um"}
 """Units by the number of a DXF header's variable $INSUNITS; 0 stands for a drawing without a unit."""
@@ -96,7 +105,7 @@ def _read_table(path: Path, unit: str) -> Drawing:
 
 
 def _with_ezdxf(path: Path, unit: str) -> Drawing:
-    """Lines, arcs and polylines of a DXF drawing's model space; a layer is a group of curves or points."""
+    """Curves and polylines of a DXF drawing's model space; a layer is a group of curves or points."""
     import ezdxf
 
     try:
@@ -115,21 +124,22 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
         parts = list(entity.virtual_entities()) if kind in ("LWPOLYLINE", "POLYLINE") else [entity]
         if kind == "POINT":
             points.setdefault(layer, []).append(np.array(entity.dxf.location))
-        elif {part.dxftype() for part in parts} <= {"LINE", "ARC"}:
+        elif {part.dxftype() for part in parts} <= _PLACES.keys():
             for place, part in enumerate(parts, len(curves) + 1):
                 tag = layer if layer != "0" else f"curve{place}"
                 curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", _along(part), None))
         else:
-            refused.append(f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), no line, arc or polyline")
+            refused.append(
+                f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), "
+                "no line, arc, spline, elliptic arc or polyline"
+            )
     tagged = any(curve.tag != f"curve{curve.number}" for curve in curves)
     return Drawing(tuple(curves), {layer: np.array(each) for layer, each in points.items()}, tagged, tuple(refused))
 
 
 def _along(part) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001 - ezdxf exports no types
-    """Places (k, 3) along a line or an arc."""
-    if part.dxftype() == "LINE":
-        return np.array([tuple(part.dxf.start), tuple(part.dxf.end)])
-    return np.array([tuple(place) for place in part.vertices(part.angles(_ON_ARC))])
+    """Places (k, 3) along a line, an arc, a spline or an elliptic arc."""
+    return np.array([tuple(place) for place in _PLACES[part.dxftype()](part)])
 
 
 def _with_gmsh(path: Path, unit: str) -> Drawing:

@@ -97,8 +97,11 @@ def test_a_wrong_curve_is_left_out_and_named_in_the_scene(tmp_path, capsys):
 
 
 @needs_ezdxf
-def test_lines_arcs_and_polylines_of_a_dxf_drawing(tmp_path, capsys):
-    """Reference: a bulge is the tangent of a quarter of the arc's angle, so that 1 is a half circle."""
+def test_the_curves_of_a_dxf_drawing(tmp_path, capsys):
+    """Reference: a bulge is the tangent of a quarter of the arc's angle, so that 1 is a half circle.
+
+    The spline is the symmetric cubic of Bézier through (−10, 4.5) mm, and the ellipse has the half axes 10 and 5 mm.
+    """
     import ezdxf
 
     document = ezdxf.new()
@@ -108,22 +111,26 @@ def test_lines_arcs_and_polylines_of_a_dxf_drawing(tmp_path, capsys):
     space.add_arc((40, 20), 20, -90, 0, dxfattribs={"layer": "leg"})
     space.add_lwpolyline([(60, 20, 0), (60, 60, 1), (20, 60, 0)], format="xyb", dxfattribs={"layer": "top"})
     space.add_circle((9, 9), 3, dxfattribs={"layer": "hole"})
-    space.add_spline([(0, 0), (1, 2), (4, 5)])
+    space.add_ellipse((0, 10), (0, -10), 0.5, 0, np.pi / 2, dxfattribs={"layer": "bow"})
+    space.add_spline_control_frame([(0, 0), (-10, 0), (-10, 9), (-20, 9)], dxfattribs={"layer": "bend"})
     space.add_point((0, 0), dxfattribs={"layer": "ground"})
     document.saveas(tmp_path / "a.dxf")
     assert import_of(tmp_path / "a.dxf") == 0
     scene = read(tmp_path / "a.toml")
-    assert list(scene.beams) == ["leg-1", "leg-2", "top-1", "top-2"]
-    line, arc, side, half = (beam.curve for beam in scene.beams.values())
+    assert list(scene.beams) == ["leg-1", "leg-2", "top-1", "top-2", "bow", "bend"]
+    line, arc, side, half, bow, bend = (beam.curve for beam in scene.beams.values())
     assert line == Line(kind="line", start=(0.0, 0.0), end=(0.04, 0.0))
     assert (arc.center, arc.direction) == (pytest.approx((0.04, 0.02), rel=1e-12), "counterclockwise")
     assert (side.start, side.end) == ((0.06, 0.02), (0.06, 0.06))
     assert (half.center, half.end) == (pytest.approx((0.04, 0.06)), pytest.approx((0.02, 0.06)))
     assert half.direction == "counterclockwise"
+    x, y = np.array(bow.points).T
+    assert (x / 0.005) ** 2 + ((y - 0.01) / 0.01) ** 2 == pytest.approx(np.ones(len(x)), abs=1e-6)
+    assert np.min(np.hypot(*(np.array(bend.points) - [-0.01, 0.0045]).T)) < 1e-6
     assert scene.bodies["ground"].points == {"ground-1": (0.0, 0.0)}
     said = capsys.readouterr().err
     assert "left out: CIRCLE on the layer 'hole'" in said
-    assert "left out: SPLINE on the layer '0'" in said
+    assert "no line, arc, spline, elliptic arc or polyline" in said
     assert import_of(tmp_path / "a.dxf", "--unit", "m", "--name", "b") == 2
     assert "a drawing in mm ($INSUNITS = 4), read in m; allowed: --unit mm" in capsys.readouterr().err
 
