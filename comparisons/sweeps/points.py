@@ -149,13 +149,18 @@ def read_points(path: Path, in_si: InSI) -> tuple[Point, ...]:
     try:
         rows = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError) as error:
-        raise _refused(str(path), str(error), "a table with names of parameters in the first line") from None
-    head, *body = [[cell.strip() for cell in row] for row in rows if row] or [[]]
-    if not body or any(len(row) != len(head) for row in body) or len(body) > MOST:
         raise _refused(
             str(path),
-            f"{len(body)} lines below the names {', '.join(head) or '(none)'}",
-            f"1 to {MOST} lines with a value for every name",
+            f"a file that cannot be read ({getattr(error, 'strerror', None) or error})",
+            "a table with names of parameters in the first line",
+        ) from None
+    head, *body = [[cell.strip() for cell in row] for row in rows if row] or [[]]
+    wrong = [f"row {k} with {len(row)} of {len(head)} values" for k, row in enumerate(body, 1) if len(row) != len(head)]
+    if not body or wrong or len(body) > MOST:
+        raise _refused(
+            str(path),
+            f"{wrong[0] if wrong else f'{len(body)} rows'} below the names {', '.join(head) or '(none)'}",
+            f"1 to {MOST} rows with a value for every name",
         )
     return tuple({name: in_si(name, cell) for name, cell in zip(head, row, strict=True)} for row in body)
 

@@ -255,7 +255,8 @@ def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]
             (size, label), (step, step_label) = _unit_of(sweep, whole[-1:]), _unit_of(sweep, whole, "station")
             axes.set(title=f"{measure.name}, {label}".rstrip(", "), xlabel=f"{stage.steps}, {step_label}")
             for task, outcome in solved:
-                share = (task.point[first.name] - first.low) / (first.high - first.low)
+                # a sample of a single point has no range
+                share = (task.point[first.name] - first.low) / (first.high - first.low or 1.0)
                 colour = 0.1 + 0.5 * share, 0.2 + 0.55 * share, 0.45 + 0.45 * share  # from dark to light blue
                 curve = measure.numbers(outcome)
                 for _, part in groupby(curve, lambda number: number["branch"]):
@@ -264,8 +265,10 @@ def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]
                     axes.plot(*own.T, look, color=colour, linewidth=1.0, markersize=2.0)
                 if curve and not outcome.completed:
                     axes.plot(curve[-1]["station"] / step, curve[-1]["value"] / size, "x", color=RED)
-        caption = f"Stage {stage.name}: curves of all points; colours from {first.text(first.low)} (dark) to "
-        caption += f"{first.text(first.high)} (light). Crosses: the last station of points that failed."
+        caption = (
+            f"Stage {stage.name}: curves of all points; colours from {first.text(first.low)} (dark) to "
+            f"{first.text(first.high)} (light). Crosses: the last station of points that failed."
+        )
         return finished(figure, f"curves-{stage.name}", caption)
 
 

@@ -148,6 +148,18 @@ def test_samples(scene, tmp_path, sample):
     assert all(1.0 <= value <= 3.0 for value in values)
 
 
+def test_a_table_of_a_single_point_has_a_page(scene, tmp_path):
+    (tmp_path / "points.csv").write_text("t\n1.7mm\n", "utf-8")
+    assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 0
+    assert (tmp_path / "s" / "index.html").exists()
+
+
+def test_a_row_with_too_few_values_is_named(scene, tmp_path, capsys):
+    (tmp_path / "points.csv").write_text("t,L\n1.7mm,95\n1.9mm\n", "utf-8")
+    assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 2
+    assert "found row 2 with 1 of 2 values below the names t, L" in capsys.readouterr().err
+
+
 POISONED = """
 import os, sys, time
 from comparisons.cli.main import run
