@@ -10,7 +10,8 @@ r        unbalanced generalised force over the largest moment
 The moments of joints are products of stiffness and angles, uncertain by ε k |θ|; the sums of a
 chain add ε √m of the largest moment.  A contact holds positions, which a gap with its weights knows to some ε of the
 longest beam; over a link that is an angle of some ε/h, in two neighbouring joints, and the force on a node is a moment
-over h.  Four times the sum is the floor.
+over h.  A moving place rests where the slope of the gap vanishes: the force times the slope's round-off over the gap's
+curvature is a force, large between beams of nearly equal curvature.  Four times the sum is the floor.
 """
 
 from math import sqrt
@@ -73,17 +74,19 @@ def certify(
     system, state = solved.system, solved.state
     turned, bend, strain, moment = _sizes(system, state.z)
     scale = max(moment, SMALLEST_LOAD)
-    stiffest = float(system.joints.stiffness.max())
     contacts, law = state.contacts, system.geometry.law
     shortest = float(system.metric.min())
-    turns = turned + ((PLACES + 1.0 / shortest) / shortest if contacts.closed.any() else 0.0)
-    floor = 4.0 * EPSILON * (stiffest * turns + sqrt(len(system.metric)) * scale) / scale
+    columns = solved.factors.bordered.columns
+    motions = np.abs(columns.diagonal[len(columns.values) :])
+    rounded = float(system.joints.stiffness.max()) * (
+        turned + ((PLACES + 1.0 / shortest) / shortest if contacts.closed.any() else 0.0)
+    ) + PLACES / float(motions[motions > 0.0].min(initial=np.inf))
+    floor = 4.0 * EPSILON * (rounded + sqrt(len(system.metric)) * scale) / scale
     gradient, (apart, overlap, pull) = np.abs(solved.gradient), contact_measures(solved)
     residual = float(gradient[~system.equations].max()) / scale
     violation = max(float(gradient[system.equations].max()), apart)
     complementarity = max(_complementarity(solved, acting), pull) / scale
     force, couple = (size / scale for size in _resultants(solved))
-    curvature = softest(solved).curvature if with_curvature else float("nan")
     balance_limit = max(BALANCE, 100.0 * floor)
     checks = (
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
@@ -108,7 +111,7 @@ def certify(
         complementarity=complementarity,
         force_balance=force,
         moment_balance=couple,
-        smallest_curvature=curvature,
+        smallest_curvature=softest(solved).curvature if with_curvature else float("nan"),
         iterations=iterations,
         failures=tuple(sentence for _, sentence in failures),
     )

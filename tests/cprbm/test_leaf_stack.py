@@ -4,6 +4,7 @@ import pytest
 
 import cprbm
 from cprbm_scene import scene_from
+from tests.together.pivots import line, weld
 
 LEAVES = (200.0, 160.0, 120.0, 80.0)
 
@@ -69,3 +70,33 @@ def test_joints_with_a_shared_force_keep_the_force_of_their_leader():
     assert coarse.completed, coarse.sentence
     tips = [answer.stations[-1].values["T.displacement"][1] for answer in (coarse, fine)]
     assert tips[0] == pytest.approx(tips[1], rel=1e-4)
+
+
+def test_a_point_of_contact_between_leaves_of_nearly_equal_curvature_is_certified():
+    """The place is known to 1e-11 of a link only.  Reference: 60 links."""
+    thick = {"thickness": 6e-3, "width": 0.01, "material": "m"}
+    load = {"M": {"kind": "moment", "body": "tip"}}
+    data = {
+        "name": "two leaves",
+        "theory": "stretch",
+        "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
+        "bodies": {
+            "ground": {"motion": "fixed", "points": {"A": [0.0, 0.0], "B": [0.0, -7.5e-3]}},
+            "tip": {"motion": "free", "points": {"T": [0.06, 0.0]}},
+        },
+        "beams": {
+            "b": thick | {"curve": line([0.0, 0.0], [0.06, 0.0]), "start": weld("A"), "end": weld("T")},
+            "c": thick | {"curve": line([0.0, -7.5e-3], [0.06, -7.5e-3]), "start": weld("B"), "end": {"joint": "free"}},
+        },
+        "contacts": {"k": {"kind": "beam-beam", "between": ["b", "c"]}},
+        "loads": load | {"F": {"kind": "force", "point": "T", "direction": [0.3, -1.0]}},
+        "stages": [
+            {"name": "F", "steps": "F", "stations": [50.0, 400.0, 900.0]},
+            {"name": "M", "steps": "M", "stations": [-0.5, -3.0]},
+        ],
+        "probes": [{"of": "T", "quantity": "displacement"}],
+    }
+    answers = [cprbm.answer(scene_from(data), cprbm.Settings(links=links)) for links in (36, 60)]
+    assert [answer.sentence for answer in answers if not answer.completed] == []
+    coarse, fine = (answer.stations[-1].values["T.displacement"] for answer in answers)
+    assert coarse == pytest.approx(fine, rel=1e-4)
