@@ -79,10 +79,11 @@ def assembled(system: System, settings: Settings) -> Driver:
         if system.mechanism.scene.assembly is None and passed.any():
             # rounded coordinates of a beam drawn beyond an edge at the own pin: the beam turns to the edge
             first = equilibrium(system, replace(first.state, driven=first.state.driven | passed), settings.iterations)
-        first = with_touching(landed(system, first, settings.iterations))
+        first, drawn = landed(system, first, settings.iterations), drawn_names(system, state)
+        first = with_touching(first) if drawn else first
     except NotConvergedError as failure:
         raise StepError(Ending.STEP_TOO_SMALL, f"no equilibrium as drawn: {failure}") from failure
-    driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn_names(system, state))
+    driver = Driver(system, settings, first, np.zeros(len(loose), dtype=bool), drawn=drawn)
     scene = system.mechanism.scene
     if scene.assembly is not None:
         _assemble(system, driver, loose, scene.assembly.moments)

@@ -133,7 +133,7 @@ def _sizes(system: System, z: Array) -> tuple[float, float, float, float]:
     links, joints, theta = system.links, system.joints, z[system.angles]
     x, y = z[links.first + 2], z[links.first + 3]
     turns = np.abs(theta[joints.before + 1] - theta[joints.before] - joints.rest)
-    strains = np.abs(system.lean * (x * np.cos(theta) + y * np.sin(theta)))
+    strains = np.abs(links.lean * (x * np.cos(theta) + y * np.sin(theta)))
     moments = [links.length * np.hypot(x, y), joints.stiffness * turns, np.abs(z[system.rows.first :])]
     largest = (float(each.max()) for each in (np.abs(z[system.turns]), turns, strains, np.concatenate(moments)))
     return next(largest), next(largest), next(largest), next(largest)

@@ -81,7 +81,7 @@ def with_touching(solved: Solved) -> Solved:
     Raises:
         NotConvergedError: the touching places repeat one another.
     """
-    if not solved.system.geometry.pairs or softest(solved).curvature > NEUTRAL:
+    if softest(solved).curvature > NEUTRAL:
         return solved
     contacts, touching = _touching(solved)
     closed = contacts.closed | touching

@@ -31,7 +31,6 @@ class System:
         limits: which rows are stops.
         hidden: flexibility (2 rows, 2 rows) of loads at places of beams without the chain's share, as of
             :func:`hidden_forces`.
-        lean: shear compliance β of the links, for the odd moment of their elements.
         lengthening: whether links have an axial compliance.
         geometry: curves and pairs of the contacts.
     """
@@ -50,7 +49,6 @@ class System:
     metric: Array
     limits: Flags
     hidden: Array
-    lean: Array
     lengthening: bool
     geometry: Geometry
 
@@ -124,7 +122,6 @@ def system_of(mechanism: Mechanism, geometry: Geometry) -> System:
         metric=links.length,
         limits=np.array([row.limit for row in mechanism.rows], dtype=bool),
         hidden=hidden_flexibility(mechanism),
-        lean=np.concatenate([chain.lean for chain in mechanism.chains.values()]),
         lengthening=bool(np.any(links.stretch)),
         geometry=geometry,
     )

@@ -8,6 +8,7 @@ import pytest
 import cprbm
 from cprbm_scene import Ending, scene_from
 from cprbm_scene.statement import PaperRigid, Related
+from tests.cprbm.scenes import cantilever_data, force
 from tests.references.flattened import Flattened
 from tests.together.pivots import LENGTH, MATERIALS, RIGIDITY, STRIP, THICKNESS, weld
 
@@ -272,33 +273,17 @@ def test_beyond_an_edges_end_a_beam_meets_the_side_of_what_is_rigid_behind_it(ki
 
 def test_a_thick_arc_that_is_unloaded_beside_its_weld_on_an_edge_comes_back_as_drawn():
     """The second joint shares the first joint's force, and a point of contact takes the second joint's place."""
-    tip, curve = [0.04, 0.04], {"kind": "arc", "center": [0.0, 0.04], "direction": "counterclockwise"}
+    tip, data = [0.04, 0.04], cantilever_data(force(-0.2, -1.0), [0.05, 0.3, 1.0, 2.0])
+    arc = {"kind": "arc", "center": [0.0, 0.04], "start": [0.0, 0.0], "end": tip, "direction": "counterclockwise"}
+    data["beams"]["beam"] |= {"curve": arc, "thickness": 6e-3, "width": 0.01}
+    data["bodies"]["tip"]["points"]["T"] = tip
     scene = scene_from(
-        {
-            "name": "quarter",
+        data
+        | {
             "theory": "shear",
             "materials": {"m": {"youngs_modulus": 26e6, "poisson_ratio": 0.45}},
-            "bodies": {
-                "wall": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
-                "tip": {"motion": "free", "points": {"T": tip}},
-            },
-            "beams": {
-                "b": {
-                    "curve": curve | {"start": [0.0, 0.0], "end": tip},
-                    "thickness": 6e-3,
-                    "width": 0.01,
-                    "material": "m",
-                    "start": weld("A"),
-                    "end": weld("T"),
-                }
-            },
-            "contacts": {"k": HALF | {"beam": "b", "body": "wall", "point": [0.0, -3e-3]}},
-            "loads": {"F": {"kind": "force", "point": "T", "direction": [-0.2, -1.0]}},
-            "stages": [
-                {"name": "in", "steps": "F", "stations": [0.05, 0.3, 1.0, 2.0]},
-                {"name": "out", "steps": "F", "stations": [0.3, 0.0]},
-            ],
-            "probes": [{"of": "T", "quantity": "displacement"}],
+            "contacts": {"k": HALF | {"beam": "beam", "body": "wall", "point": [0.0, -3e-3]}},
+            "stages": [*data["stages"], {"name": "out", "steps": "P", "stations": [0.3, 0.0]}],
         }
     )
     assert np.all(np.abs(solved(scene, 40)["T.displacement"]) < 1e-12 * tip[0])
