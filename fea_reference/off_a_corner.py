@@ -38,7 +38,7 @@ _DIFFERENCE = 1e-7  # arc length increment of finite differences
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A segment of a branch: its first point and its arc ``length``."""
+    """A segment of a branch: first point and arc ``length``."""
 
     branch: Branch
     begin: BranchPoint

@@ -78,7 +78,7 @@ class Finding:
 def compare_records(
     old: Record, new: Record, *, same: float = SAME, improved: Collection[str] = ()
 ) -> Iterator[Finding]:
-    """The findings of every run of the old record, by name: at least one, and one for each failing class.
+    """The findings of every run of the old record, by name: a finding for every failing class, else a single finding.
 
     Args:
         old: the record that states the uncertainties.

@@ -1,4 +1,4 @@
-"""The command line: what it prints where, and the code with which it ends."""
+"""The command line: output, messages and exit codes."""
 
 import json
 import os

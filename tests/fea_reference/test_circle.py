@@ -159,7 +159,7 @@ def test_unloading_is_the_way_back():
 
 
 def test_the_search_for_the_zone_does_not_feel_the_mesh():
-    """From the mesh on whose penalty is the stiffest of all, iterations stay; from coarse ones they grow little."""
+    """From the mesh with the stiffest penalty on, the number of iterations stays; below, the number grows little."""
     coarse, *fine = (
         solved(on_circle((FORCE,)), elements=n).stations[0].certificate.iterations for n in (40, 320, 1280)
     )

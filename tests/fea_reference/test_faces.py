@@ -111,7 +111,7 @@ def on_its_pin(
 ):
     """An arc pinned to the edge that it is tangent to at the pin, which stands at an ``angle``, or is turned there.
 
-    Its tip is driven down to the edge, and free along it and to turn.  What drives it is on a body that turns, too.
+    A drive moves the tip down to the edge; the tip slides along the edge and turns.  The drive's body turns, too.
     """
     away = 0.5 * thickness if thick else 0.0
     cos, sin = math.cos(angle), math.sin(angle)

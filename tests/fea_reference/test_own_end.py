@@ -1,4 +1,4 @@
-"""A beam that lies on its own end, and beyond it: what is stored, by differences."""
+"""The energy of a beam that lies on its own end, and beyond the end, by differences."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""A beam that lies along a floor, pressed at its tip: what presses goes straight through it, however little it is.
+"""A beam that lies along a floor, pressed at the tip: the floor bears the whole force, however small.
 
 And one whose tip is moved by however little.
 """

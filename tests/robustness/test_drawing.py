@@ -231,8 +231,8 @@ def test_a_column_between_walls_is_pressed_less_than_what_lies_on_them_buckles_o
 
 @pytest.mark.parametrize(("angle", "alone"), [(0.0, True), (0.9, False)])
 def test_what_is_driven_against_a_beam_leaves_alone_where_it_is_held(angle, alone):
-    # a plane above the tip of a cantilever comes down by a quarter of its length: level it stays above the root, which
-    # it is 0.3 away from; by cos 0.9 × 0.25 = 0.155 it comes to it where it leans by 0.9 and begins 0.1 from it
+    # a plane above the tip of a cantilever comes down by a quarter of the length: a level plane, 0.3 away, stays above
+    # the root; a plane that leans by 0.9, 0.1 away from the root, comes down by 0.25 cos 0.9 = 0.155: more than 0.1
     model, _ = tip_loaded(0.0, 1.0)
     size = model.size
     normal = np.array([-np.sin(angle), -np.cos(angle)])

@@ -53,7 +53,7 @@ def test_the_gradient_is_that_of_the_lagrangian(theory, corrected):
 @pytest.mark.parametrize(("theory", "corrected"), VARIANTS)
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_elimination_gives_solution_and_inertia_of_the_dense_matrix(theory, corrected, seed):
-    # reference: the dense Hessian by differences of the gradient; its eigenvalues and its solution
+    # reference: the dense Hessian by differences of the gradient, with eigenvalues and solution
     system, _ = loop(theory, 6, corrected=corrected)
     state = disturbed(system, seed, 0.1 * seed)
     matrix = dense_hessian(system, state)

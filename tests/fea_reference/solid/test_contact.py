@@ -175,7 +175,7 @@ def test_where_a_contact_closes_is_found_from_far_beyond_it():
 
 
 def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
-    # its radius is a tenth of the thickness: the beam ends up beyond it, or says that it cannot be held by it
+    # the radius is a tenth of the thickness: the beam ends beyond the obstacle, or the solver says why it ends
     scene = bar(
         straight(0.1),
         0.001,
@@ -200,9 +200,9 @@ def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
 
 
 def test_a_beam_that_would_come_to_lie_on_a_circles_centre_is_held_by_it():
-    # in one step to its second station the beam would go so deep that the circle's centre is between its edges, where
-    # neither of them faces it; the force on a point support is that of beam tables at small loads, 1 + 3 (L − a)/(2 a)
-    # times the tip's, and the circle can be at most as much lower as it is round
+    # in a single step to the second station the circle's centre comes between the beam's edges, and neither edge faces
+    # the centre; beam tables give the force on a point support at small loads, 1 + 3 (L − a)/(2 a) times the tip's
+    # force, and the support is lower by the circle's radius at most
     length, a = 0.31, 0.2
     scene = bar(
         straight(length),

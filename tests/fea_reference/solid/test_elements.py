@@ -1,4 +1,4 @@
-"""Elements alone: what they must do exactly, whatever their shape."""
+"""Elements alone: states that every shape of an element reproduces exactly."""
 
 import numpy as np
 import pytest
