@@ -111,7 +111,7 @@ def hold_sections_upright(m: Mechanism, geometry: Geometry) -> None:
     contacts = open_contacts(geometry, z)
     pairs, curves = np.ones(len(geometry.pairs), dtype=bool), np.ones(len(geometry.curves), dtype=bool)
     places = places_at_feet(z, arrays, sites, contacts.sides, pairs, curves, contacts.counters)
-    for k, gap in enumerate(_gaps_at(geometry, z, contacts, places)):
+    for k, gap in enumerate(replace(contacts, places=places).gaps(geometry, z)):
         curve, other = places.curve[k], places.other[k]
         for end, node in enumerate((arrays.first[curve], arrays.last[curve] + 1)):
             at_weld = sites.welded[curve, end] and places.piece[k] + places.xi[k] == node
@@ -198,8 +198,7 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
 class Contacts:
     """Possible places of contact, marks of the closed places, sides of the pairs and of corners' curves, counters.
 
-    ``given_up`` holds pairs and pieces at which a moving place failed; the pairs ``kept_open`` have no places.
-    ``apart`` holds the open places that these pairs had before, for their sides.
+    ``given_up`` holds pairs and pieces at which a moving place failed; the pairs ``kept_open`` stay open.
     """
 
     places: Places
@@ -209,7 +208,11 @@ class Contacts:
     counters: Ints
     given_up: frozenset[tuple[int, int]] = frozenset()
     kept_open: frozenset[int] = frozenset()
-    apart: Places | None = None
+
+    @property
+    def stay_open(self) -> Flags:
+        """Places of the pairs ``kept_open``."""
+        return np.isin(self.places.pair, list(self.kept_open))
 
     def pressing(self, pair: int) -> Flags:
         """Closed places of a pair."""
@@ -221,7 +224,7 @@ class Contacts:
 
     def settled(self, geometry: Geometry, z: Array) -> tuple[Places, Array]:
         """All places at a state with moved feet, and their gaps."""
-        places, gaps = copied(self.places), np.empty(len(self.closed))
+        places, gaps = copied(self.places), np.empty(len(self.places.pair))
         settle(z, geometry.arrays, places, gaps, np.empty(len(gaps)), self.counters, 0)
         if geometry.law is not None:
             geometry.law.write_gaps(z, places, gaps)
@@ -233,15 +236,10 @@ def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> froze
     places = fixed_places(
         geometry, z, contacts.sides, np.ones(len(geometry.pairs), dtype=bool), contacts.counters, welds=True
     )
-    gaps = _gaps_at(geometry, z, contacts, places)
+    gaps = replace(contacts, places=places).gaps(geometry, z)
     # a weld behind the end of the other beam is on neither side of the beam
     deepest = -TOUCHING - half_thicknesses(geometry.arrays, places)
     return frozenset(places.pair[(gaps > deepest) & (gaps < TOUCHING)].tolist())
-
-
-def _gaps_at(geometry: Geometry, z: Array, contacts: Contacts, places: Places) -> Array:
-    """Gaps of places in a state, all open."""
-    return replace(contacts, places=places, closed=np.zeros(len(places.pair), dtype=bool)).gaps(geometry, z)
 
 
 def open_contacts(geometry: Geometry, z: Array) -> Contacts:

@@ -39,7 +39,10 @@ LEAST_CURVATURE = 0.1
 """Share of |C'|² below which the second derivative is replaced by |C'|²: a step of descent far from the minimum."""
 
 PASSED_OVER = 1e-9
-"""Share of a distance by which a chord must be farther away to be passed over: more than round-off."""
+"""Share of a distance by which chords must be farther away to be passed over: more than round-off."""
+
+GROUPS = 64
+"""Most groups of pieces that wait in a search: half of them hold 2^32 pieces."""
 
 BEYOND = 0.1
 """Share of the half thicknesses, or of a piece for lines, by which a place is on the other side of a beam."""
@@ -193,15 +196,23 @@ def closest_point(
 
 
 @compiled
-def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weights: Array) -> float:  # pragma: no cover
-    """Write both ends (pieces, 4) of a curve's pieces; the length of the longest chord."""
-    longest = 0.0
+def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weights: Array) -> None:  # pragma: no cover
+    """Write the chords (2 pieces, 5) of a curve's pieces and of groups of pieces: both ends and a distance.
+
+    Row 2 ``first`` + k holds group k: the groups 2k and 2k + 1 together, from the number of pieces on a single piece.
+    The chords of a group's pieces lie within the distance of the group's chord.
+    """
+    base, count = 2 * curves.first[curve], curves.last[curve] + 1 - curves.first[curve]
     for piece in range(curves.first[curve], curves.last[curve] + 1):
-        ax, ay = curve_point(z, curves, piece, 0.0, weights)
-        bx, by = curve_point(z, curves, piece, 1.0, weights)
-        chords[piece, 0], chords[piece, 1], chords[piece, 2], chords[piece, 3] = ax, ay, bx, by
-        longest = max(longest, hypot(bx - ax, by - ay))
-    return longest
+        chord = chords[piece + curves.first[curve] + count]
+        chord[0], chord[1] = curve_point(z, curves, piece, 0.0, weights)
+        chord[2], chord[3] = curve_point(z, curves, piece, 1.0, weights)
+        chord[4] = 0.0
+    for k in range(count - 1, 0, -1):
+        chord, one, two = chords[base + k], chords[base + 2 * k], chords[base + 2 * k + 1]
+        chord[0], chord[1], chord[2], chord[3] = one[0], one[1], two[2], two[3]
+        aside = max(_to_chord(chord, one[2], one[3])[1], _to_chord(chord, two[0], two[1])[1])
+        chord[4] = max(one[4], two[4]) + aside
 
 
 @compiled
@@ -220,7 +231,6 @@ def closest_of(
     curves: CurveArrays,
     curve: int,
     chords: Array,
-    longest: float,
     guess: int,
     x: float,
     y: float,
@@ -228,26 +238,32 @@ def closest_of(
 ) -> tuple[int, float, float]:  # pragma: no cover
     """Piece and parameter of the closest chord of all pieces, and its distance: a first guess.
 
-    A chord farther along the curve than the distance allows is passed over.
+    A group of pieces farther away than a known piece is passed over.
 
     Args:
         z, curves, curve: the state and the curve.
-        chords, longest: of :func:`write_chords`.
+        chords: of :func:`write_chords`.
         guess: a piece; a near one saves time.
         x, y: the point.
         turn: an angle, and the least turn of a piece's link from there; the distance is inf without any such piece.
     """
-    best, found, share = np.inf, curves.first[curve], 0.0
-    bound, piece = _to_chord(chords[guess], x, y)[1] if turn[1] == 0.0 else np.inf, curves.first[curve]
-    while piece <= curves.last[curve]:
-        if turn[1] > 0.0 and abs(z[curves.angle[piece]] - turn[0]) < turn[1]:
-            piece += 1
+    first, count = curves.first[curve], curves.last[curve] + 1 - curves.first[curve]
+    best, found, share, waiting, size = np.inf, first, 0.0, np.empty(GROUPS, np.int64), 1
+    bound = _to_chord(chords[guess + first + count], x, y)[1] if turn[1] == 0.0 else np.inf
+    waiting[0] = 1
+    while size > 0:
+        size -= 1
+        group = waiting[size]
+        piece = first + group - count
+        at, distance = _to_chord(chords[2 * first + group], x, y)
+        if distance - chords[2 * first + group, 4] > (1.0 + PASSED_OVER) * min(best, bound):
             continue
-        at, distance = _to_chord(chords[piece], x, y)
-        if distance < best:
+        if group < count:
+            waiting[size], waiting[size + 1], size = 2 * group + 1, 2 * group, size + 2
+        elif turn[1] > 0.0 and abs(z[curves.angle[piece]] - turn[0]) < turn[1]:
+            continue
+        elif distance < best or (distance == best and piece < found):
             best, found, share = distance, piece, at
-        beyond = hypot(chords[piece, 2] - x, chords[piece, 3] - y) - (1.0 + PASSED_OVER) * min(best, bound)
-        piece += 1 + (int(beyond / longest) if beyond > longest > 0.0 else 0)
     return found, share, best
 
 
@@ -256,9 +272,9 @@ def closest_chord(
     z: Array, curves: CurveArrays, curve: int, x: float, y: float, weights: Array
 ) -> tuple[int, float, float]:  # pragma: no cover
     """Piece and parameter of the closest chord of all pieces, and its distance."""
-    chords = np.empty((curves.span.size, 4))
-    longest = write_chords(z, curves, curve, chords, weights)
-    return closest_of(z, curves, curve, chords, longest, curves.first[curve], x, y, (0.0, 0.0))
+    chords = np.empty((2 * curves.span.size, 5))
+    write_chords(z, curves, curve, chords, weights)
+    return closest_of(z, curves, curve, chords, curves.first[curve], x, y, (0.0, 0.0))
 
 
 @compiled

@@ -213,10 +213,8 @@ def contact_places(
     sites: Sites,
     sides: Array,
     corner_sides: Array,
-    kept_open: Flags,
     old: Places,
     closed: Flags,
-    apart: Places,
     counters: Ints,
 ) -> tuple[Places, Flags]:  # pragma: no cover
     """Fixed places at the nearest feet with the moving places of ``old``, and marks of the closed among both.
@@ -228,23 +226,20 @@ def contact_places(
         z, curves: the state.
         sites: of the geometry.
         sides, corner_sides: of the contacts.
-        kept_open: pairs (pairs,) without places.
         old, closed: the known places.
-        apart: earlier places of open pairs, for their sides.
         counters: count the searches.
     """
     nothing = np.zeros(curves.first.size, np.bool_)
     near = near_pairs(z, curves, sites.columns, REACH, counters)
     for k in range(closed.size):
         near[old.pair[k]] |= closed[k]
-    near &= ~kept_open
     fixed = places_at_feet(z, curves, sites, sides, near, nothing, counters)
     find_bends(z, curves, fixed, ROUNDS)
     choose_sides(z, curves, fixed)
     count = fixed.piece.size
     moving = np.flatnonzero(old.moves & (curves.angle[old.piece] >= 0))
-    known, aside = matched(curves, fixed, old), matched(curves, fixed, apart)
-    marks, room, weights = np.zeros(count + moving.size, np.bool_), np.empty((2, count)), np.empty((4, 2, STENCIL))
+    known, marks = matched(curves, fixed, old), np.zeros(count + moving.size, np.bool_)
+    room, weights = np.empty((2, count)), np.empty((4, 2, STENCIL))
     for k in range(count):
         curve, j = fixed.curve[k], known[k]
         between = not sites.rigid[curve] and not sites.rigid[fixed.other[k]] and curve != fixed.other[k]
@@ -253,8 +248,6 @@ def contact_places(
             fixed.piece[k], fixed.xi[k], fixed.foot[k], fixed.eta[k] = old.piece[j], old.xi[j], old.foot[j], old.eta[j]
         elif between and j >= 0:
             fixed.side[k] = old.side[j]
-        elif between and aside[k] >= 0:
-            fixed.side[k] = apart.side[aside[k]]
         elif between:
             _turn_side(z, curves, fixed, k, counters, room, weights)
         if curves.angle[fixed.piece[k]] < 0:

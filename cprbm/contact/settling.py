@@ -58,18 +58,19 @@ def find_feet(
 
     The distance of a place on a beam from the beam itself is inf where the beam has not turned back.
     """
-    weights, chords = np.empty((2, STENCIL)), np.empty((curves.span.size, 4))
-    longest, near = np.full(curves.first.size, -1.0), curves.first.copy()
+    weights, chords = np.empty((2, STENCIL)), np.empty((2 * curves.span.size, 5))
+    near = np.full(curves.first.size, -1)
     for k in range(places.piece.size):
         piece, other, least_turn = places.piece[k], places.other[k], 0.0
-        if longest[other] < 0.0:
-            longest[other] = write_chords(z, curves, other, chords, weights)
+        if near[other] < 0:
+            write_chords(z, curves, other, chords, weights)
+            near[other] = curves.first[other]
         if places.curve[k] == other:
             least_turn = TURNED_BACK
         x, y = curve_point(z, curves, piece, places.xi[k], weights)
         counters[SEARCHES] += 1
         turn = z[curves.angle[piece]], least_turn
-        foot, eta, distance[k] = closest_of(z, curves, other, chords, longest[other], near[other], x, y, turn)
+        foot, eta, distance[k] = closest_of(z, curves, other, chords, near[other], x, y, turn)
         places.foot[k], places.eta[k], near[other] = foot, eta, foot
 
 

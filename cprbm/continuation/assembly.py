@@ -28,7 +28,7 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.chain import Mechanism, Row, apart_ends, stop_angle, unit_direction
-from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, least_gap, located, pressing, pressing_names
+from cprbm.continuation.closing import CLOSED, drawn_names, kept_open, located, nearest_place, pressing, pressing_names
 from cprbm.continuation.driver import Driver, StepError
 from cprbm.continuation.path import Way
 from cprbm.equilibrium import (
@@ -188,7 +188,7 @@ def _landed(system: System, first: Solved, row: int, iterations: int) -> Solved:
 
     def gap(s: float) -> float:
         solved = moved(s, apart)
-        return min(least_gap(system.geometry, solved.state, pair) for pair in apart) + CLOSED
+        return min(nearest_place(system.geometry, solved.state, pair)[0] for pair in apart) + CLOSED
 
     with suppress(NotConvergedError):  # contacts that press may hold the body
         if pressing(first):

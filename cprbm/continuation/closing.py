@@ -19,13 +19,13 @@ g = −CLOSED there, so that the active set closes the pair in the least gap.  A
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache
 from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, Geometry, Places, joined, taken, touching_as_drawn
+from cprbm.contact import TOUCHING, Geometry, Places, taken, touching_as_drawn
 from cprbm.continuation.path import SMALLEST_TURN, tangent, turned
 from cprbm.equilibrium import (
     NotConvergedError,
@@ -35,8 +35,8 @@ from cprbm.equilibrium import (
     System,
     equilibrium,
     gap_rates,
-    points_between,
     with_fixed_places,
+    with_minima,
 )
 from cprbm_scene.answer import Array, Flags
 
@@ -90,23 +90,18 @@ def event_values(solved: Solved, acting: Flags) -> Array:
     return np.where(solved.system.limits & acting, values, np.inf)
 
 
-def stop_changes(
-    before: Solved, after: Solved, acting: Flags, solve: Callable[[float, frozenset[int]], Solved]
-) -> list[Change]:
+def stop_changes(before: Solved, after: Solved, acting: Flags, solve: Callable[[float], Solved]) -> list[Change]:
     """Stops that close or open in a step.
 
     Args:
         before, after: the step.
         acting: which stops act.
-        solve: state at a fraction of the step, with pairs kept open.
+        solve: state at a fraction of the step.
     """
     begin, end = event_values(before, acting), event_values(after, acting)
-
-    def value(row: int, share: float) -> float:
-        return float(event_values(solve(share, frozenset()), acting)[row])
-
     happened = np.flatnonzero(end < -HAPPENED).tolist()
-    shares = [0.0 if begin[row] <= HAPPENED else located(partial(value, row)) for row in happened]
+    values = ((row, lambda share, row=row: float(event_values(solve(share), acting)[row])) for row in happened)
+    shares = [0.0 if begin[row] <= HAPPENED else located(value) for row, value in values]
     return [Change(*change) for change in zip(shares, happened, strict=True)]
 
 
@@ -165,23 +160,14 @@ def with_stops(system: System, state: State, acting: Flags, iterations: int, spr
     raise NotConvergedError("the stops do not settle")
 
 
-def least_gap(geometry: Geometry, state: State, pair: int) -> float:
-    """Least gap of an open pair, between joints too; inf if the curves are far apart."""
-    return nearest_place(geometry, state, pair)[0]
-
-
 def nearest_place(geometry: Geometry, state: State, pair: int) -> tuple[float, Places, Flags]:
     """Least gap of an open pair, between joints too, all places, and the mark of the nearest.
 
     The gap is inf, and no place is marked, if the curves are far apart.
     """
-    full = with_fixed_places(geometry, state.z, replace(state.contacts, kept_open=frozenset()))
-    places, gaps = full.settled(geometry, state.z)
-    if not geometry.joints_alone:
-        between, least = points_between(
-            state.z, geometry.arrays, geometry.sites, places, full.closed, gaps, pair, full.counters
-        )
-        places, gaps = joined(places, between), np.append(gaps, least)
+    full = with_fixed_places(geometry, state.z, state.contacts)
+    settled, gaps = full.settled(geometry, state.z)
+    places, gaps = with_minima(geometry, state.z, replace(full, places=settled), gaps, [pair])
     gaps = np.append(np.where(places.pair == pair, gaps, np.inf), np.inf)
     nearest = (np.arange(len(gaps)) == np.argmin(gaps)) & np.isfinite(gaps)
     return float(gaps.min()), places, nearest[:-1]
@@ -189,7 +175,7 @@ def nearest_place(geometry: Geometry, state: State, pair: int) -> tuple[float, P
 
 def apart_pairs(solved: Solved, pairs: frozenset[int]) -> frozenset[int]:
     """The pairs whose curves do not touch."""
-    return frozenset(pair for pair in pairs if least_gap(solved.system.geometry, solved.state, pair) > TOUCHING)
+    return frozenset(pair for pair in pairs if nearest_place(solved.system.geometry, solved.state, pair)[0] > TOUCHING)
 
 
 def pressing(solved: Solved) -> frozenset[int]:
@@ -209,23 +195,16 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
     """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
     geometry = system.geometry
     at_ends = touching_as_drawn(geometry, state.z, state.contacts)
-    return frozenset(
-        pair.name for k, pair in enumerate(geometry.pairs) if k in at_ends or least_gap(geometry, state, k) < TOUCHING
-    )
+    names = enumerate(pair.name for pair in geometry.pairs)
+    return frozenset(name for k, name in names if k in at_ends or nearest_place(geometry, state, k)[0] < TOUCHING)
 
 
 def kept_open(state: State, pairs: frozenset[int]) -> State:
     """The state with open pairs, which stay open in an equilibrium."""
     contacts = state.contacts
-    kept = ~np.isin(contacts.places.pair, list(pairs))
-    places, closed = taken(contacts.places, kept), contacts.closed[kept]
-    apart = taken(contacts.places, ~kept & ~contacts.closed) if pairs else contacts.apart
-    return replace(state, contacts=replace(contacts, places=places, closed=closed, kept_open=pairs, apart=apart))
-
-
-def may_close(state: State) -> State:
-    """The state with pairs that are free to close again."""
-    return replace(state, contacts=replace(state.contacts, kept_open=frozenset(), apart=None))
+    kept = ~(np.isin(contacts.places.pair, list(pairs)) & (contacts.closed | contacts.places.moves))
+    remaining = replace(contacts, places=taken(contacts.places, kept), closed=contacts.closed[kept], kept_open=pairs)
+    return replace(state, contacts=remaining)
 
 
 class Pressed(NamedTuple):
@@ -245,70 +224,55 @@ class Pressed(NamedTuple):
         return float(solved.state.contacts.places.force[self.places(solved)].sum())
 
 
-def contact_changes(before: Solved, after: Solved, solve: Callable[[float, frozenset[int]], Solved]) -> list[Change]:
+def contact_changes(
+    before: Solved, after: Solved, closing: frozenset[int], solve: Callable[[float], Solved]
+) -> list[Change]:
     """The first closing of pairs, and the openings of pairs, in a step.
 
     Args:
         before, after: the step.
-        solve: state at a fraction of the step, with pairs kept open.
+        closing: pairs kept open that overlap at the end.
+        solve: state at a fraction of the step.
+
+    Raises:
+        NotConvergedError: a state on the way was not found, or the step is too long.
+    """
+    old, new = pressing(before), pressing(after)
+    changes = _closing(before, after, closing, solve) if closing else []
+    if (apart_pairs(before, new - old) or (closing and not changes)) and turned(before, after) > SMALLEST_TURN:
+        raise NotConvergedError("a contact closes on the way to a state that the contact alone leads to")
+    return sum((_opening(pair, solve) for pair in sorted(old - new)), changes)
+
+
+def _closing(before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float], Solved]) -> list[Change]:
+    """The first closing of pairs kept open; empty where no state on the way has a gap of ``-CLOSED``.
 
     Raises:
         NotConvergedError: a state on the way was not found.
     """
-    old, new = pressing(before), pressing(after)
-    return sum((_opening(pair, solve) for pair in sorted(old - new)), _closing(before, after, new - old, solve))
+    change = after.state.target - before.state.target
 
-
-def changes_unseen(before: Solved, after: Solved, change: Change) -> bool:
-    """True if other pairs close or open before a change well within a step, and are back at the end of the step."""
-    old, new = pressing(before), pressing(after)
-    return change.share < 1.0 - TOGETHER and bool(
-        apart_pairs(before, new - old - change.pairs) or old - new - change.pairs
-    )
-
-
-def _closing(
-    before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float, frozenset[int]], Solved]
-) -> list[Change]:
-    """The first closing of some pairs; empty for pairs that touch already.
-
-    A pair that stays apart when kept open closes in a step that is too long, or at the begin of a short step.
-
-    Raises:
-        NotConvergedError: the step is too long.
-    """
-    apart = apart_pairs(before, pairs)
-    if not apart:
-        return []
-
-    change, first, slopes = after.state.target - before.state.target, dict[float, int](), dict[float, float]()
-
-    def gap(share: float) -> tuple[float, float]:
-        solved = solve(share, apart) if share else before
+    @cache
+    def least(share: float) -> tuple[float, float, int]:
+        solved = solve(share)
         geometry, state = solved.system.geometry, solved.state
-        near = ((*nearest_place(geometry, state, pair), pair) for pair in sorted(apart))
-        found, places, nearest, first[share] = min(near, key=itemgetter(0))
-        slopes[share] = float(gap_rates(geometry, state.z, places, nearest, tangent(solved, change)).sum())
-        return found + CLOSED if abs(found + CLOSED) > LOCATED * CLOSED else 0.0, slopes[share]
+        near = ((*nearest_place(geometry, state, pair), pair) for pair in sorted(pairs))
+        gap, places, nearest, pair = min(near, key=itemgetter(0))
+        return gap, float(gap_rates(geometry, state.z, places, nearest, tangent(solved, change)).sum()), pair
 
-    end = gap(1.0)
-    if end[0] > 0.0 and turned(before, after) > SMALLEST_TURN:
-        raise NotConvergedError("a contact closes on the way to a state that the contact alone leads to")
-    if end[0] > 0.0:
+    def event(share: float) -> tuple[float, float]:
+        gap, slope, _ = least(share)
+        return gap + CLOSED if abs(gap + CLOSED) > LOCATED * CLOSED else 0.0, slope
+
+    end = event(1.0)
+    share = located_by_slopes(event, end) if end[0] <= 0.0 else 1.0
+    gap, slope, first = least(share)
+    if end[0] > 0.0 or abs(gap) > TOUCHING:
         return []
-    share = located_by_slopes(gap, end)
-    return [
-        Change(
-            share,
-            pairs=apart,
-            closes=True,
-            first=first[share],
-            early=min(share, CLOSED / max(-slopes[share], CLOSED)),
-        )
-    ]
+    return [Change(share, pairs=pairs, closes=True, first=first, early=min(share, CLOSED / max(-slope, CLOSED)))]
 
 
-def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> list[Change]:
+def _opening(pair: int, solve: Callable[[float], Solved]) -> list[Change]:
     """The opening of a pair; empty if the force does not change its sign.
 
     Raises:
@@ -316,9 +280,10 @@ def _opening(pair: int, solve: Callable[[float, frozenset[int]], Solved]) -> lis
     """
 
     def force(share: float) -> float:
-        solved = solve(share, frozenset())
-        is_closed = pair in pressing(solved)
-        return Pressed(pair).force(solved) if is_closed else -least_gap(solved.system.geometry, solved.state, pair)
+        solved = solve(share)
+        if pair in pressing(solved):
+            return Pressed(pair).force(solved)
+        return -nearest_place(solved.system.geometry, solved.state, pair)[0]
 
     begin, end = force(0.0), force(1.0)
     if not begin > 0.0 > end:

@@ -19,18 +19,19 @@ choice of the stage a branch with two ways on ends, and others are passed only t
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from cprbm.continuation.closing import (
+    TOGETHER,
     Change,
+    apart_pairs,
     changed,
-    changes_unseen,
     contact_changes,
     kept_open,
-    may_close,
+    pressing,
     pressing_names,
     stop_changes,
 )
@@ -45,7 +46,17 @@ from cprbm.continuation.critical import (
 )
 from cprbm.continuation.descent import descend
 from cprbm.continuation.path import Reached, Way, energy_before, jumped, turned
-from cprbm.equilibrium import NotConvergedError, Solved, State, System, blocked, certify, equilibrium, softest
+from cprbm.equilibrium import (
+    ContactClosesError,
+    NotConvergedError,
+    Solved,
+    State,
+    System,
+    blocked,
+    certify,
+    equilibrium,
+    softest,
+)
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Event, Loss
 from cprbm_scene.answer import Flags
@@ -153,36 +164,46 @@ class Driver:
 
     def _trial(self, way: Way, t: float, largest: float) -> tuple[float, Solved, Change | None] | StepError:
         """Fraction and state at the end of the next step, and the change there, or why there is no step."""
-        begin = self.reached
+        begin, closing, states = self.reached, frozenset[int](), dict[float, Solved]()
+        awaited = frozenset(range(len(self.system.geometry.pairs))) - pressing(self.solved)
 
-        starts = dict[frozenset[int], dict[float, State]]()
-
-        @cache  # events ask again for the states at the ends of the step and at the located share
-        def solve(share: float, pairs: frozenset[int]) -> Solved:
-            near = starts.setdefault(pairs, {0.0: kept_open(self.solved.state, pairs)})
-            start = near[min(near, key=lambda known: abs(known - share))]
-            solved = self._equilibrium(replace(start, target=way.target(begin + share * (t - begin))))
-            near[share] = solved.state
-            return solved
+        def solve(share: float) -> Solved:
+            # events ask again for the states at the ends of the step and at the located share
+            if share not in states:
+                near = states[min(states, key=lambda known: abs(known - share))].state
+                states[share] = self._equilibrium(
+                    replace(near, target=way.target(begin + share * (t - begin))), awaited
+                )
+            return states[share]
 
         try:
-            solved = solve(1.0, frozenset())
+            while 1.0 not in states:
+                states[0.0] = replace(self.solved, state=kept_open(self.solved.state, closing))
+                try:
+                    solve(1.0)
+                except ContactClosesError as overlap:
+                    closing |= apart_pairs(self.solved, overlap.overlapping)
+                    awaited -= overlap.met
+            solved = solve(1.0)
             # an event is not sought in a step that is too long
-            self._check_turn(solved, largest)
+            turn = turned(self.solved, solved)
+            if turn > largest:
+                return StepError(
+                    Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step", too_long=True
+                )
             changes: list[Change] = [*stop_changes(self.solved, solved, self.acting, solve)]
-            changes += contact_changes(self.solved, solved, solve)
+            changes += contact_changes(self.solved, solved, closing, solve)
             at, change = t, min(changes, key=lambda change: change.share, default=None)
             if change is not None:
                 at, change = begin + change.share * (t - begin), change._replace(early=change.early * (t - begin))
-                opened = change.pairs if change.closes else frozenset()
-                solved = solve(change.share, opened) if change.share else self.solved
-                if changes_unseen(self.solved, solved, change):
-                    # a step that ends at the change sees the other pairs
+                solved = solve(change.share)
+                if change.share < 1.0 - TOGETHER and pressing(self.solved) - pressing(solved) - change.pairs:
+                    # a pair opens before, and is back at the end of the step: a shorter step sees the pair
                     return self._trial(way, at, largest)
-            self._check_turn(solved, largest)
-        except StepError as refused:
-            return refused
-        except (NotConvergedError, ValueError) as failure:
+            elif closing:
+                # overlaps at the very end of a short step
+                solved = self._equilibrium(kept_open(solved.state, frozenset()))
+        except (ContactClosesError, NotConvergedError, ValueError) as failure:
             return StepError(Ending.STEP_TOO_SMALL, str(failure))
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)
         if ending is not Ending.COMPLETED:
@@ -191,18 +212,8 @@ class Driver:
             return StepError(Ending.STEP_TOO_SMALL, "the links went another way than the path's tangents")
         return at, solved, change
 
-    def _check_turn(self, solved: Solved, largest: float) -> None:
-        """Refuse a state too far from the present state.
-
-        Raises:
-            StepError: a link turned by more than ``largest``.
-        """
-        turn = turned(self.solved, solved)
-        if turn > largest:
-            raise StepError(Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step", too_long=True)
-
-    def _equilibrium(self, state: State) -> Solved:
-        solved = equilibrium(self.system, state, self.settings.iterations)
+    def _equilibrium(self, state: State, awaited: frozenset[int] = frozenset()) -> Solved:
+        solved = equilibrium(self.system, state, self.settings.iterations, awaited=awaited)
         self.spent += solved.iterations
         return solved
 
@@ -238,7 +249,7 @@ class Driver:
             after = self._equilibrium(state)
         except NotConvergedError as failure:
             raise StepError(Ending.STEP_TOO_SMALL, f"'{name}' closes or opens and {failure}") from failure
-        after = replace(after, state=may_close(after.state))
+        after = replace(after, state=kept_open(after.state, frozenset()))
         if blocked(after).lost:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)

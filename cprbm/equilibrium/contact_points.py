@@ -8,16 +8,14 @@ After every solve the rule looks at runs of neighbouring closed joints:
   again is part of a length: the moving place becomes joints.
 
 The equilibrium is solved again until the rule changes nothing.  Where moving places fail, or would move far at once,
-joints alone are solved first and made points anew; then the moving place with the flattest gap is given up.
+joints alone are solved first and made points anew, once.
 """
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from cprbm.contact import (
-    FINDING,
     REACH,
     TOUCHING,
     Contacts,
@@ -32,10 +30,10 @@ from cprbm.contact import (
     matched,
     near_pairs,
     on_edge,
-    settle,
     taken,
 )
 from cprbm.equilibrium.contact_set import (
+    ContactClosesError,
     NotConvergedError,
     Touched,
     passed_through,
@@ -46,7 +44,7 @@ from cprbm.equilibrium.factors import Springs
 from cprbm.equilibrium.iteration import OVERLAP, arcs_of, beside_points
 from cprbm.equilibrium.neighbours import ISOLATED, LIGHT, given_up, points_at, short_runs
 from cprbm.equilibrium.system import State, System
-from cprbm_scene.answer import Array, Flags
+from cprbm_scene.answer import Flags
 
 ROUNDS = 12
 """Solves under the same targets."""
@@ -61,54 +59,57 @@ The joints on both sides of a small round edge hold like a valley, whatever the 
 """
 
 
-def touched_equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
+def touched_equilibrium(
+    system: System,
+    start: State,
+    iterations: int,
+    springs: Springs | None = None,
+    awaited: frozenset[int] = frozenset(),
+) -> Touched:
     """Equilibrium near a state under the state's targets, with settled places of contact.
 
     Raises:
+        ContactClosesError: ``awaited`` pairs overlap in the equilibrium.
         NotConvergedError: no equilibrium was found, the places do not settle, or a beam passed through itself.
     """
     geometry, contacts = system.geometry, start.contacts
     if not geometry.pairs:
         return solve_set(system, start, iterations, springs)
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
-    kept = contacts.closed | contacts.places.moves
+    # the open places of pairs that overlap know their sides
+    kept = contacts.closed | contacts.places.moves | contacts.stay_open
     places, closed = taken(contacts.places, kept), contacts.closed[kept]
     contacts = replace(contacts, places=places, closed=closed, given_up=frozenset(), corner_sides=corners)
     contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts), False, start.z
-    old = contacts.places if not contacts.kept_open else _of_all_pairs(geometry, before, contacts)
+    old = contacts.places
     for number in range(ROUNDS):
         try:
-            solved = solve_set(system, replace(start, contacts=contacts), iterations, springs)
+            solved = solve_set(system, replace(start, contacts=contacts), iterations, springs, awaited)
         except NotConvergedError:
             moves = contacts.places.moves & ~on_edge(geometry.arrays, contacts.places)
             if not moves.any():
                 raise
-            if joints_tried:
-                contacts = _without(geometry, contacts, moves & _flattest(geometry, start.z, contacts))
-            else:
-                contacts = replace(_without(geometry, contacts, moves), given_up=frozenset())
-            joints_tried = True
+            contacts = _without(geometry, contacts, moves)
+            if not joints_tried:
+                contacts, joints_tried = replace(contacts, given_up=frozenset()), True
             contacts = with_fixed_places(geometry, start.z, contacts)
             continue
         revised = _revised(geometry, solved, LIGHT if number < RETRIES else 0.0)
         if revised is None:
             new = _come_near(geometry, solved)
-            every = partial(_of_all_pairs, geometry, solved.state.z, solved.state.contacts)
-            if passed_through(geometry, before, old, solved.state.z, every, contacts):
+            if passed_through(geometry, before, old, solved.state):
                 raise NotConvergedError("a beam passed through itself or over a point")
             if new is None:
                 return solved
             revised = new
+        closing = revised.places.pair[revised.closed & np.isin(revised.places.pair, list(awaited))]
+        if len(closing):
+            raise ContactClosesError(closing, closing)
         if number < RETRIES and not joints_tried:
             # the joints beside a place may open with the joints in its stead: the place is tried again
             revised = replace(revised, given_up=frozenset())
         start, contacts = solved.state, with_fixed_places(geometry, solved.state.z, revised)
     raise NotConvergedError("the places of contact do not settle")
-
-
-def _of_all_pairs(geometry: Geometry, z: Array, contacts: Contacts) -> Places:
-    """Places of all pairs, the open pairs included: an open pair must not pass through itself either."""
-    return with_fixed_places(geometry, z, replace(contacts, kept_open=frozenset())).places
 
 
 def _revised(geometry: Geometry, solved: Touched, least: float) -> Contacts | None:
@@ -195,15 +196,6 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
     return new if np.any(late & (new.gaps(geometry, z) < np.minimum(least, -OVERLAP))) else None
 
 
-def _flattest(geometry: Geometry, z: Array, contacts: Contacts) -> Flags:
-    """The moving place with the least curvature of the gap."""
-    places = copied(contacts.places)
-    gaps, curvatures = np.empty(len(contacts.closed)), np.empty(len(contacts.closed))
-    settle(z, geometry.arrays, places, gaps, curvatures, contacts.counters, FINDING)
-    moving = places.moves & ~on_edge(geometry.arrays, places)
-    return np.asarray(np.arange(len(gaps)) == np.argmin(np.where(moving, curvatures, np.inf)))
-
-
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     """Contacts after moving places become joints again; the joints within a piece share the force."""
     places, closed = copied(contacts.places), contacts.closed.copy()
@@ -237,7 +229,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
     overlap, span = -OVERLAP - beside_points(curves, places, closed)[1], curves.span[places.piece]
     replaced = np.zeros(len(closed), dtype=bool)
     created = taken(places, replaced)
-    for i in np.flatnonzero(closed[heavier] | (gaps < overlap[heavier])).tolist():
+    for i in np.flatnonzero(closed[heavier] | ((gaps < overlap[heavier]) & ~contacts.stay_open[heavier])).tolist():
         best = heavier[i]
         # the joints of a run are neighbours
         if any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in runs[i]):

@@ -27,7 +27,6 @@ is the method of Josephy (1979) for F ≥ 0, g ≥ 0.  An exchange of all places
 same sets: the forces of a zone that is too long alternate in sign from joint to joint.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,12 +46,12 @@ from cprbm.contact import (
     separations,
     settle_near,
     sweeps_any_point,
-    taken,
 )
 from cprbm.equilibrium.columns import contact_terms
 from cprbm.equilibrium.factors import SingularError, Springs, factored_border, pulls, solved_border
 from cprbm.equilibrium.iteration import (
     LONGEST_MOVE,
+    OVERLAP,
     arcs_of,
     change_set,
     closable,
@@ -94,15 +93,19 @@ ARRIVED = 1e-6
 """Largest last change of a moving place, pieces."""
 
 Linear = tuple[Array, Numbers, Flags, Array, Array, Array]
-Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints, Ints]
+Settling = tuple[CurveArrays, Places, Flags, Array, Array, Array, Ints, Ints, Flags]
 
 
 class NotConvergedError(Exception):
-    """Newton's method found no equilibrium; ``locked`` names the contradicted row."""
+    """Newton's method found no equilibrium."""
 
-    def __init__(self, reason: str, locked: str = "") -> None:
-        super().__init__(reason)
-        self.locked = locked
+
+class ContactClosesError(Exception):
+    """Pairs that stay open overlap in the equilibrium; the pairs ``met`` overlap there or in an iteration."""
+
+    def __init__(self, overlapping: Ints, met: Ints) -> None:
+        super().__init__("a contact closes")
+        self.overlapping, self.met = frozenset(overlapping.tolist()), frozenset(met.tolist())
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,19 +120,14 @@ class Touched:
 
 def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
     """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay."""
-    kept_open, old = np.zeros(len(geometry.pairs), dtype=bool), contacts.places
-    kept_open[list(contacts.kept_open)] = True
-    apart = taken(old, np.zeros(0, dtype=np.int64)) if contacts.apart is None else contacts.apart
     places, closed = contact_places(
         z,
         geometry.arrays,
         geometry.sites,
         contacts.sides,
         contacts.corner_sides,
-        kept_open,
-        old,
+        contacts.places,
         contacts.closed,
-        apart,
         contacts.counters,
     )
     # a joint that shared a force may have been replaced by a point of contact
@@ -137,28 +135,31 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
     return replace(contacts, places=places, closed=closed)
 
 
-def passed_through(
-    geometry: Geometry, before: Array, old: Places, after: Array, places: Callable[[], Places], contacts: Contacts
-) -> bool:
+def passed_through(geometry: Geometry, before: Array, old: Places, after: State) -> bool:
     """True if a beam went through itself or over a circle, a corner or an end: the vector to a place turned round.
 
-    ``places`` returns the places after the step.
     The gaps of a beam to itself and to a point have no sign: only the way between two states shows a passage.  Beams of
     pairs that are kept open overlap until the closing is located.
     """
-    points, arrays = geometry.points, geometry.arrays
-    if len(points) and not contacts.kept_open and sweeps_any_point(before, after, arrays, points, contacts.counters):
+    points, arrays, z, contacts = geometry.points, geometry.arrays, after.z, after.contacts
+    if len(points) and not contacts.kept_open and sweeps_any_point(before, z, arrays, points, contacts.counters):
         return True
     unsigned = (old.curve == old.other) & ~old.moves
     if not unsigned.any():
         return False
-    new = places()
-    first, second, number = separations(before, arrays, old), separations(after, arrays, new), matched(arrays, old, new)
+    new = with_fixed_places(geometry, z, contacts).places
+    first, second, number = separations(before, arrays, old), separations(z, arrays, new), matched(arrays, old, new)
     seen = np.flatnonzero(unsigned & (number >= 0) & (np.hypot(*first.T) < REACH))
     return bool(np.any(np.einsum("ij,ij->i", first[seen], second[number[seen]]) < 0.0))
 
 
-def solve_set(system: System, start: State, iterations: int, springs: Springs | None = None) -> Touched:
+def solve_set(
+    system: System,
+    start: State,
+    iterations: int,
+    springs: Springs | None = None,
+    awaited: frozenset[int] = frozenset(),
+) -> Touched:
     """Equilibrium near a state under the state's targets, and the set of closed places.
 
     Args:
@@ -166,18 +167,23 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
         start: state with targets; not changed.
         iterations: largest number of Newton iterations.
         springs: springs on the links' angles, of a descent.
+        awaited: pairs that stay open.
 
     Raises:
+        ContactClosesError: awaited pairs overlap in the equilibrium or in an iteration.
         NotConvergedError: no equilibrium was found, the set of closed places returns, or a point becomes a length.
     """
     geometry, contacts, z, driven = system.geometry, start.contacts, start.z.copy(), start.driven
     z[system.rows.first :][~driven] = start.target[~driven] * ~start.repeated[~driven]
     m, curves = system.numbers, geometry.arrays
     places, closed = copied(contacts.places), contacts.closed.copy()
-    gaps, curvatures, room = np.empty(len(closed)), np.empty(len(closed)), np.zeros(len(closed))
+    # the fixed places of pairs that stay open wait for the end of the iterations
+    passive = np.where(contacts.stay_open & ~places.moves, np.inf, 0.0)
+    gaps, curvatures, room = np.full(len(closed), np.inf), np.empty(len(closed)), passive.copy()
     linear = z, m, driven, start.target, *pulls(system, springs)
-    settling = curves, places, closed, gaps, curvatures, room, contacts.counters, geometry.sites.columns
-    settle_near(z, *settling[:-1], FINDING)
+    waits, met = contacts.stay_open | np.isin(places.pair, list(awaited)), np.zeros(len(closed), dtype=bool)
+    settling = curves, places, closed, gaps, curvatures, room, contacts.counters, geometry.sites.columns, waits
+    settle_near(z, *settling[:7], FINDING)
     seen: dict[bytes, int] = {}
     last, returned = np.inf, False
     for iteration in range(1, iterations + 1):
@@ -185,6 +191,7 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
         if returned:
             _choose_set(geometry, linear, settling)
         size, moved = _step(geometry, linear, settling, settles=iteration > 1 and not returned)
+        met |= waits & (gaps < -OVERLAP)
         changed = bool(np.any(closed != before))
         if changed:
             times = seen[closed.tobytes()] = seen.get(closed.tobytes(), 0) + 1
@@ -196,8 +203,12 @@ def solve_set(system: System, start: State, iterations: int, springs: Springs | 
         size = size if moved < ARRIVED else max(size, moved)
         arrived, last = size < CLOSE or SHRINKING * last < size < ROUNDED, size
         if arrived and not changed:
-            room[:] = 0.0
+            room[:] = passive
             if _settle_set(geometry, z, settling, len(closed), FINDING) == 0:
+                overlaps = waits & (gaps < -OVERLAP)
+                met |= overlaps
+                if awaited.intersection(places.pair[met].tolist()):
+                    raise ContactClosesError(places.pair[overlaps], places.pair[met])
                 state = replace(start, z=z, contacts=replace(contacts, places=places, closed=closed))
                 return Touched(state, gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
@@ -207,10 +218,10 @@ def _settle_set(geometry: Geometry, z: Array, settling: Settling, most: int, ste
     """Settle places in at most ``steps`` and change the set; the number of places with a wrong sign."""
     if geometry.law is None:
         return settle_set(z, *settling, most, steps)
-    curves, places, closed, gaps, *_, columns = settling
-    settle_near(z, *settling[:-1], steps)
+    curves, places, closed, gaps, *_, columns, waits = settling
+    settle_near(z, *settling[:7], steps)
     geometry.law.write_gaps(z, places, gaps)
-    return change_set(curves, places, closed, gaps, columns, most)
+    return change_set(curves, places, closed, gaps, columns, waits, most)
 
 
 def _step(geometry: Geometry, linear: Linear, settling: Settling, *, settles: bool) -> tuple[float, float]:
@@ -219,11 +230,11 @@ def _step(geometry: Geometry, linear: Linear, settling: Settling, *, settles: bo
     Raises:
         NotConvergedError: the system is singular.
     """
-    z, (curves, places, closed, gaps, curvatures, room, counters, pairs) = linear[0], settling
+    z, (curves, places, closed, gaps, curvatures, room, counters, pairs, waits) = linear[0], settling
     try:
         if geometry.law is None:
-            known = gaps, curvatures, room, counters, pairs, int(settles)
-            return newton_step(*linear, curves, places, closed, *known)
+            known = gaps, curvatures, room, counters
+            return newton_step(*linear, curves, places, closed, *known, pairs, waits, int(settles))
         if settles:
             _settle_set(geometry, z, settling, len(closed))
         return step_with_columns(*linear, curves, places, closed, room, *contact_terms(geometry, z, places, closed))
@@ -243,9 +254,9 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> None:
     if not wrong:
         return
     z, m, curves, places, closed, gaps = linear[0], linear[1], *settling[:4]
-    allowed, beside, depth = closable(curves, places, closed, settling[-1])
+    allowed, beside, depth = closable(curves, places, closed, settling[-2])
     leaders = np.arange(len(closed)) + places.shares
-    trial = ((allowed & (gaps < -NEAR * gaps.min(initial=0.0))) | (closed & ~beside))[leaders]
+    trial = ((allowed & ~settling[-1] & (gaps < -NEAR * gaps.min(initial=0.0))) | (closed & ~beside))[leaders]
     columns, gradient = contact_terms(geometry, z, places, trial)
     bordered, _, reduced = reduced_system(*linear, columns, gradient)
     own = trial & (places.shares == 0)

@@ -22,20 +22,21 @@ LONGEST_MOVE = 2.0
 
 @compiled
 def change_set(
-    curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints, most: int
+    curves: CurveArrays, places: Places, closed: Flags, gaps: Array, pairs: Ints, waits: Flags, most: int
 ) -> int:  # pragma: no cover
     """Close overlapping places and open pulling places; the number of places with a wrong sign.
 
     With more than ``most`` such places nothing changes; with ``most`` = 1 the worst overlap closes, or without overlaps
     the largest pull opens.  Without a closed place the worst overlap closes first: far beyond a closing curves overlap
-    over a length and press in a point.  ``pairs`` (pairs, 2) holds the numbers of both curves of every pair.
+    over a length and press in a point.  ``pairs`` (pairs, 2) holds the numbers of both curves of every pair; places
+    marked ``waits`` stay open.
     """
     allowed, beside, depth = closable(curves, places, closed, pairs)
     own, gap = places.shares == 0, gaps.copy()
     for k in np.flatnonzero(~own):
         gap[k + places.shares[k]] += gaps[k]
     opens = own & closed & ((places.force < 0.0) | beside)
-    closes = own & allowed & ~closed & (gap < -OVERLAP - depth)
+    closes = own & allowed & ~waits & ~closed & (gap < -OVERLAP - depth)
     count = int(np.count_nonzero(opens | closes))
     if count > 1 and (most == 1 or (most > 1 and not np.any(closed))):
         wrong, size = (closes, gap) if np.any(closes) else (opens, places.force)
@@ -130,12 +131,13 @@ def settle_set(
     room: Array,
     counters: Ints,
     pairs: Ints,
+    waits: Flags,
     most: int,
     steps: int,
 ) -> int:  # pragma: no cover
     """Settle the places that may close in at most ``steps``, and change the set by :func:`change_set`."""
     settle_near(z, curves, places, closed, gaps, curvatures, room, counters, steps)
-    return change_set(curves, places, closed, gaps, pairs, most)
+    return change_set(curves, places, closed, gaps, pairs, waits, most)
 
 
 @compiled
@@ -154,6 +156,7 @@ def newton_step(
     room: Array,
     counters: Ints,
     pairs: Ints,
+    waits: Flags,
     changes: int,
 ) -> tuple[float, float]:  # pragma: no cover
     """A step of Newton's method with the closed places of the smooth curves, :func:`step_with_columns`.
@@ -161,7 +164,7 @@ def newton_step(
     ``changes`` is the number of changes of the set before the step.
     """
     for _ in range(changes):
-        settle_set(z, curves, places, closed, gaps, curvatures, room, counters, pairs, closed.size, 0)
+        settle_set(z, curves, places, closed, gaps, curvatures, room, counters, pairs, waits, closed.size, 0)
     gradient = np.zeros(z.size)
     columns = contact_columns(z, curves, places, closed, gradient)
     return step_with_columns(z, m, driven, target, stiffness, anchor, curves, places, closed, room, columns, gradient)

@@ -5,10 +5,24 @@ The joints of a pair's first curve are in the order of the curve; places of a sh
 Loops over joints are compiled.  Array expressions are not: their machine code is long, and the first solve loads it.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from cprbm.chain import compiled
-from cprbm.contact import CORNER, FINDING, CurveArrays, Places, Sites, is_movable, settle, taken
+from cprbm.contact import (
+    CORNER,
+    FINDING,
+    Contacts,
+    CurveArrays,
+    Geometry,
+    Places,
+    Sites,
+    is_movable,
+    joined,
+    settle,
+    taken,
+)
 from cprbm.equilibrium.iteration import arcs_of
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -63,7 +77,7 @@ def points_at(
     """Joints (k,) as moving places with ``forces`` (k,) at the minima of the gap; gaps and curvatures there.
 
     Inf and 0 without a minimum between the neighbouring joints, and at a corner: the corner is a place.  At a corner of
-    the thickness the slope changes its sign, and the place does not come to rest.
+    the thickness the slope changes its sign: no place rests there.
     """
     points, gaps, curvatures = taken(places, joints), np.empty(joints.size), np.empty(joints.size)
     points.moves[:], points.force[:] = True, forces
@@ -73,24 +87,28 @@ def points_at(
     missing |= points.at_point & (curves.corner[points.foot] == CORNER)
     settle(z, curves, points, gaps, curvatures, counters, 1)
     moved = np.abs(arcs_of(curves, points) - found) > RESTING * curves.span[pieces]
-    for i in range(joints.size):
-        curve, low, high = points.curve[i], np.inf, -np.inf
-        for near in range(max(pieces[i] - 1, curves.first[curve]), min(pieces[i] + 1, curves.last[curve]) + 1):
-            lean = curves.thickening[near] / curves.span[near]
-            low, high = min(low, lean), max(high, lean)
-        if missing[i] or (moved[i] and high - low > LEANING):
-            gaps[i], curvatures[i] = np.inf, 0.0
+    ends = curves.first[points.curve, None], curves.last[points.curve, None]
+    near = np.clip(pieces[:, None] + np.array([-1, 0, 1]), *ends)
+    missing |= moved & (np.ptp(curves.thickening[near] / curves.span[near], axis=1) > LEANING)
+    gaps[missing], curvatures[missing] = np.inf, 0.0
     return points, gaps, curvatures
 
 
-def points_between(
-    z: Array, curves: CurveArrays, sites: Sites, places: Places, closed: Flags, gaps: Array, pair: int, counters: Ints
+def with_minima(
+    geometry: Geometry, z: Array, contacts: Contacts, gaps: Array, pairs: Iterable[int]
 ) -> tuple[Places, Array]:
-    """Moving places at the minima of a pair's gap between open joints, where a point of contact may be; gaps there."""
-    joints = minima_of(curves, places, closed, gaps, sites.columns, pair)
-    points, least, curvatures = points_at(z, curves, places, joints, np.zeros(joints.size), counters)
-    possible = [k for k in np.flatnonzero(curvatures > 0.0).tolist() if is_movable(curves, sites, points, k)]
-    return taken(points, np.array(possible, dtype=np.int64)), least[possible]
+    """All places, and moving places where a point of contact of ``pairs`` may be between open joints; their gaps."""
+    curves, sites, places = geometry.arrays, geometry.sites, contacts.places
+    known = curves, contacts.places, contacts.closed, gaps
+    for pair in () if geometry.joints_alone else pairs:
+        joints = minima_of(*known, sites.columns, pair)
+        points, least, curvatures = points_at(
+            z, curves, contacts.places, joints, np.zeros(joints.size), contacts.counters
+        )
+        movable = np.array([is_movable(curves, sites, points, k) for k in range(joints.size)], dtype=bool)
+        possible = movable & (curvatures > 0.0)
+        places, gaps = joined(places, taken(points, possible)), np.append(gaps, least[possible])
+    return places, gaps
 
 
 @compiled

@@ -60,8 +60,9 @@ class Solved:
 
     @cached_property
     def gaps(self) -> Array:
-        """Gaps of all places of contact."""
-        return self.state.contacts.gaps(self.system.geometry, self.state.z)
+        """Gaps of all places of contact; inf for pairs kept open."""
+        gaps = self.state.contacts.gaps(self.system.geometry, self.state.z)
+        return np.where(self.state.contacts.stay_open, np.inf, gaps)
 
     def response(self, load: Array) -> Array:
         """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
@@ -73,7 +74,13 @@ class Solved:
         return np.asarray(row_values(self.state.z, self.system.rows))
 
 
-def equilibrium(system: System, start: State, iterations: int, springs: Springs | None = None) -> Solved:
+def equilibrium(
+    system: System,
+    start: State,
+    iterations: int,
+    springs: Springs | None = None,
+    awaited: frozenset[int] = frozenset(),
+) -> Solved:
     """Equilibrium near a state under the state's targets, with the contacts that press there.
 
     Args:
@@ -81,12 +88,14 @@ def equilibrium(system: System, start: State, iterations: int, springs: Springs 
         start: state with targets.
         iterations: largest number of Newton iterations.
         springs: springs on the links' angles, of a descent.
+        awaited: open pairs whose closing ends the search.
 
     Raises:
+        ContactClosesError: awaited pairs overlap in the equilibrium.
         NotConvergedError: no equilibrium was found.
     """
     while True:
-        touched = touched_equilibrium(system, start, iterations, springs)
+        touched = touched_equilibrium(system, start, iterations, springs, awaited)
         solved = at_state(system, touched.state, springs, touched.iterations)
         missed, state = _contradicted(solved), solved.state
         if missed is None:
@@ -95,7 +104,7 @@ def equilibrium(system: System, start: State, iterations: int, springs: Springs 
         repeated = repeated_rows(system, state)
         if repeated.sum() >= state.repeated.sum():
             name = system.mechanism.rows[missed].name
-            raise NotConvergedError(f"row {name} contradicts the others", locked=name)
+            raise NotConvergedError(f"row {name} contradicts the others")
         start = replace(state, driven=(state.driven | state.repeated) & ~repeated, repeated=repeated)
 
 

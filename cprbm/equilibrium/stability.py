@@ -19,10 +19,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, Contacts, joined
+from cprbm.contact import TOUCHING, Contacts
 from cprbm.equilibrium.columns import gap_rates
 from cprbm.equilibrium.iteration import closable
-from cprbm.equilibrium.neighbours import points_between
+from cprbm.equilibrium.neighbours import with_minima
 from cprbm.equilibrium.solving import Solved, at_state
 from cprbm_scene.answer import Array, Flags
 
@@ -91,15 +91,11 @@ def with_touching(solved: Solved) -> Solved:
 def _touching(solved: Solved) -> tuple[Contacts, Flags]:
     """Contacts with places at touching minima between joints, and the touching open places."""
     geometry, z, contacts = solved.system.geometry, solved.state.z, solved.state.contacts
-    curves, places = geometry.arrays, contacts.places
-    for pair in range(0 if geometry.joints_alone else len(geometry.pairs)):
-        known = contacts.places, contacts.closed, solved.gaps, pair, contacts.counters
-        points, _ = points_between(z, curves, geometry.sites, *known)
-        places = joined(places, points)
+    places, gaps = with_minima(geometry, z, contacts, solved.gaps, range(len(geometry.pairs)))
     closed = np.concatenate([contacts.closed, np.zeros(len(places.pair) - len(contacts.closed), dtype=bool)])
     every = replace(contacts, places=places, closed=closed)
-    open_places = closable(curves, places, closed, geometry.sites.columns)[0] & ~closed
-    return every, open_places & (places.shares == 0) & (np.abs(every.gaps(geometry, z)) < TOUCHING)
+    open_places = closable(geometry.arrays, places, closed, geometry.sites.columns)[0] & ~closed
+    return every, open_places & (places.shares == 0) & (np.abs(gaps) < TOUCHING)
 
 
 def _softest(solved: Solved) -> Mode:
