@@ -215,18 +215,20 @@ def contact_places(
     corner_sides: Array,
     old: Places,
     closed: Flags,
+    stay_open: Flags,
     counters: Ints,
 ) -> tuple[Places, Flags]:  # pragma: no cover
     """Fixed places at the nearest feet with the moving places of ``old``, and marks of the closed among both.
 
-    Known places keep force and state.  A new place of a beam in self-contact has the present side, and a new place
-    beyond the end of another beam too.
+    Known places keep force, state and side.  A new place of a beam in self-contact has the present side, and a place
+    beyond another beam has come round the end and changes the side.
 
     Args:
         z, curves: the state.
         sites: of the geometry.
         sides, corner_sides: of the contacts.
         old, closed: the known places.
+        stay_open: known places of pairs that overlap (their sides do not change).
         counters: count the searches.
     """
     nothing = np.zeros(curves.first.size, np.bool_)
@@ -246,10 +248,11 @@ def contact_places(
         if j >= 0 and closed[j]:
             marks[k], fixed.force[k], fixed.side[k] = True, old.force[j], old.side[j]
             fixed.piece[k], fixed.xi[k], fixed.foot[k], fixed.eta[k] = old.piece[j], old.xi[j], old.foot[j], old.eta[j]
-        elif between and j >= 0:
-            fixed.side[k] = old.side[j]
         elif between:
-            _turn_side(z, curves, fixed, k, counters, room, weights)
+            if j >= 0 and (stay_open[j] or old.side[j] != 0.0):
+                fixed.side[k] = old.side[j]
+            if j < 0 or not stay_open[j]:
+                _turn_side(z, curves, fixed, k, counters, room, weights)
         if curves.angle[fixed.piece[k]] < 0:
             fixed.side[k] = corner_sides[curve]
     marks[count:] = closed[moving]

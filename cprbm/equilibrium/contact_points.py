@@ -76,10 +76,7 @@ def touched_equilibrium(
     if not geometry.pairs:
         return solve_set(system, start, iterations, springs)
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
-    # the open places of pairs that overlap know their sides
-    kept = contacts.closed | contacts.places.moves | contacts.stay_open
-    places, closed = taken(contacts.places, kept), contacts.closed[kept]
-    contacts = replace(contacts, places=places, closed=closed, given_up=frozenset(), corner_sides=corners)
+    contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
     contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts), False, start.z
     old = contacts.places
     for number in range(ROUNDS):

@@ -128,6 +128,7 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
         contacts.corner_sides,
         contacts.places,
         contacts.closed,
+        contacts.stay_open,
         contacts.counters,
     )
     # a joint that shared a force may have been replaced by a point of contact
