@@ -131,11 +131,11 @@ class Units(Record):
 
     length: Literal["m", "cm", "mm", "um", "in"] = "m"
     """Unit of lengths."""
-    force: Literal["N", "kN", "mN", "uN"] = "N"
+    force: Literal["N", "kN", "mN", "uN", "lbf"] = "N"
     """Unit of forces."""
     angle: Literal["rad", "deg"] = "rad"
     """Unit of angles."""
-    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
+    stress: Literal["Pa", "kPa", "MPa", "GPa", "psi"] = "Pa"
     """Unit of moduli and of stresses in claims."""
 
 
@@ -323,7 +323,7 @@ class Reading:
             and Mistake(
                 name,
                 repr(given.value if setting is None else setting),
-                f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}",
+                f"a finite number, as 1.9{given.unit}",
             )
         )
         return Value(float(Fraction(repr(number)) * Fraction(repr(size))), unit if given.unit else None)

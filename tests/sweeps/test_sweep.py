@@ -245,7 +245,7 @@ def test_kills_of_the_parent_end_in_the_same_table(scene, tmp_path):
     ("options", "said"),
     [
         (["--vary", "thickness=1mm..2mm:3"], "names no parameter"),
-        (["--vary", "t=1N..2N:3"], "a finite number in mm"),
+        (["--vary", "t=1N..2N:3"], "a finite number, as 1.9mm"),
         (["--vary", "t=1mm..5mm:3"], "a number from 1 to 3 mm"),
         (["--vary", "t=1mm..2mm:1"], "two values or more"),
         (["--vary", "t=1mm..2mm"], "without a number of values"),
