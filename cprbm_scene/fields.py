@@ -71,10 +71,10 @@ from cprbm_scene.units import (
 
 T = TypeVar("T")
 
-_LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
-Word = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
+LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
+Word = Annotated[str, StringConstraints(pattern=f"^[{LETTERS}][{LETTERS}0-9-]*$", max_length=64)]
 """Latin and Greek letters, digits, '_' and '-': the name of a parameter in an expression."""
-NAME = f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$"
+NAME = f"^[{LETTERS}][{LETTERS}0-9-]*( [{LETTERS}0-9-]+)*$"
 """Pattern of words with a single space between words: names are parts of keys, of file names and of options."""
 Name = Annotated[str, StringConstraints(pattern=NAME, max_length=64)]
 Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]

@@ -31,6 +31,9 @@ BLUE, RED, GREY, INK, GREEN, RULE = "#1f5fa8", "#c8321e", "#8a8a8a", "#202428", 
 LINES = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))
 """Lines and markers of the probes in one figure."""
 
+_TICKS = 4
+"""Most intervals between the ticks of an abscissa: long numbers stay apart."""
+
 _MARGIN = 0.1
 """White margin of a figure, inches."""
 
@@ -39,6 +42,7 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
     "font.size": 11.0,
+    "axes.formatter.limits": (-3, 5),  # powers of ten of longer numbers stand beside the axis
     "axes.titlelocation": "left",
     "axes.titlesize": 12.0,
     "axes.spines.top": False,
@@ -93,6 +97,8 @@ def canvas(
         ).ravel()
         for spare in axes[count:]:
             spare.remove()
+        for each in axes[:count]:
+            each.locator_params(axis="x", nbins=_TICKS)
         yield drawing, [*axes[:count]]
 
 

@@ -1,6 +1,5 @@
 """Points of a sweep: values of parameters in SI, from grids, samples and files."""
 
-import csv
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,6 +12,8 @@ from scipy.stats import qmc
 
 from comparisons.formats import file_unit, joined, with_symbols
 from cprbm_scene import Array, Mistake, Scene, SceneError
+from cprbm_scene.mistakes import refuse_broken
+from cprbm_scene.units import rows_of, text_of
 
 Point = Mapping[str, float]
 """Values of parameters by name, SI."""
@@ -22,6 +23,9 @@ InSI = Callable[[str, str], float]
 
 MOST = 100_000
 """Largest number of points in a sweep."""
+
+_LONGEST = 100_000_000
+"""Largest size of a table of points in bytes."""
 
 SEED = 905
 """Seed of the samples: a command always draws the same points."""
@@ -136,33 +140,37 @@ def sample(text: str, axes: Sequence[Axis]) -> tuple[Point, ...]:
     else:
         unit = qmc.Sobol(size, seed=SEED).random_base2(math.ceil(math.log2(count)))[:count]
     low, high = (np.array([getattr(axis, end) for axis in axes]) for end in ("low", "high"))
-    values = low + unit * (high - low)
-    return tuple({axis.name: float(x) for axis, x in zip(axes, row, strict=True)} for row in values)
+    rows = low + unit * (high - low)
+    return tuple({axis.name: float(x) for axis, x in zip(axes, row, strict=True)} for row in rows)
 
 
 def read_points(path: Path, in_si: InSI) -> tuple[Point, ...]:
-    """Points of a CSV file: names of parameters in the first line, numbers with or without units below.
+    """Points of a table: names of parameters in the first row, numbers with or without units below.
 
     Raises:
-        SceneError: the file is absent or no table, or the scene refuses a value.
+        SceneError: the file cannot be read, or a row is wrong; the error names file and row.
     """
+    points, where = list[Point](), ""
     try:
-        rows = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
-    except (OSError, UnicodeDecodeError) as error:
-        raise _refused(
-            str(path),
-            f"a file that cannot be read ({getattr(error, 'strerror', None) or error})",
-            "a table with names of parameters in the first line",
-        ) from None
-    head, *body = [[cell.strip() for cell in row] for row in rows if row] or [[]]
-    wrong = [f"row {k} with {len(row)} of {len(head)} values" for k, row in enumerate(body, 1) if len(row) != len(head)]
-    if not body or wrong or len(body) > MOST:
-        raise _refused(
-            str(path),
-            f"{wrong[0] if wrong else f'{len(body)} rows'} below the names {', '.join(head) or '(none)'}",
-            f"1 to {MOST} rows with a value for every name",
+        (_, names), *rows = rows_of(text_of(path, "a table in UTF-8", most=_LONGEST)) or [(1, [])]
+        refuse_broken(
+            not 1 <= len(rows) <= MOST
+            and Mistake(
+                "",
+                f"{len(rows)} rows below the names {', '.join(names) or '(none)'}",
+                f"names of parameters in the first row, and 1 to {MOST} rows of numbers",
+            )
         )
-    return tuple({name: in_si(name, cell) for name, cell in zip(head, row, strict=True)} for row in body)
+        for row, cells in rows:
+            where, point = f"row {row}", dict(zip(names, cells, strict=False))
+            refuse_broken(
+                not len(cells) == len(names) == len(point)
+                and Mistake("", f"{len(cells)} values of {', '.join(names)}", "a value for every name, each name once")
+            )
+            points.append({name: in_si(name, cell) for name, cell in point.items()})
+    except SceneError as error:
+        raise SceneError([Mistake(where, each.found, each.allowed, str(path)) for each in error.mistakes]) from None
+    return tuple(points)
 
 
 def axes_of(points: Sequence[Point]) -> tuple[Axis, ...]:

@@ -13,7 +13,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.present import figures
 from comparisons.present.curves import curve_figures
-from comparisons.present.picture import bounds_of, carried, outline_of, view_of
+from comparisons.present.picture import Arrow, Bounds, bounds_of, carried, outline_of, view_of
 from comparisons.present.strips import left_of, with_stresses
 from comparisons.present.view import force_block
 from cprbm_scene import (
@@ -156,6 +156,15 @@ def test_limits_span_the_shown_colours_and_arrows(solved):
     assert bounds_of(scene, views, "combined_stress").least == 0.0
     vectors = [bounds.arrow(push) for view in views for push in view.arrows_of("push")]
     assert max(np.hypot(*vector) for vector in vectors if vector is not None) == pytest.approx(0.13 * bounds.size)
+
+
+def test_a_flat_picture_has_room_for_its_arrows():
+    """A level strip of 100 by 2: the arrow from below has 13 % of the length."""
+    push = Arrow("push", "pin", "strip", np.array([[50.0, -1.0]]), np.array([[0.0, 7.0]]))
+    bounds = Bounds(np.array([0.0, -1.0]), np.array([100.0, 1.0]), 0.0, 1.0, {"push": 7.0})
+    wide = bounds.around([push])
+    assert (*wide.low, *wide.high) == pytest.approx((0.0, -14.0, 100.0, 1.0))
+    np.testing.assert_array_equal(bounds.around([]).high, bounds.high)
 
 
 def test_the_rays_of_a_stop_turn_with_its_body(jumping):
