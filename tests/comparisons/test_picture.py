@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ import cprbm
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
+from comparisons.formats import display_unit
+from comparisons.geometry import longest
 from comparisons.pairing import Solvers, paired
-from comparisons.present import figures
+from comparisons.present import curves, figures
 from comparisons.present.curves import curve_figures
 from comparisons.present.picture import Arrow, Bounds, bounds_of, carried, outline_of, view_of
 from comparisons.present.strips import left_of, with_stresses
@@ -204,6 +207,19 @@ def test_a_curve_needs_two_stations_and_may_go_back(hinge, right):
     (path,) = of(load.model_copy(update={"stations": (0.3, 0.6), "shown": (0.6,)}), back)
     assert path.name == "path-M"
     assert path.caption.startswith("Rotation")
+
+
+def test_a_contact_in_a_point_is_shown_on_a_part_of_its_beam(solved, monkeypatch):
+    """The finite elements press over 1e-4 of a beam: the figure shows a twentieth, and no wide zone."""
+    scene, answer, _ = solved
+    monkeypatch.setattr(curves, "panels_figure", lambda name, caption, abscissa, panels, **_: panels)
+    where = SimpleNamespace(where=(answer.stations[-1].stage, answer.stations[-1].value))
+    compared = SimpleNamespace(scene=scene, rows=[where], runs=SimpleNamespace(pair=(answer, answer)))
+    (panels,) = curves.contact_figures(compared)
+    factor, _ = display_unit(scene, "m", longest(scene))
+    for panel in panels:
+        shown = factor * np.ptp(np.concatenate([s for s, *_ in panel.lines]))
+        assert 0.05 * longest(scene) <= shown * (1.0 + 1e-9) < 0.06 * longest(scene)
 
 
 def test_a_window_shows_the_beams_alone_where_the_rest_is_twice_as_large(solved):
