@@ -31,9 +31,6 @@ BLUE, RED, GREY, INK, GREEN, RULE = "#1f5fa8", "#c8321e", "#8a8a8a", "#202428", 
 LINES = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))
 """Lines and markers of the probes in one figure."""
 
-_TICKS = 4
-"""Most intervals between the ticks of an abscissa: long numbers stay apart."""
-
 _MARGIN = 0.1
 """White margin of a figure, inches."""
 
@@ -98,7 +95,7 @@ def canvas(
         for spare in axes[count:]:
             spare.remove()
         for each in axes[:count]:
-            each.locator_params(axis="x", nbins=_TICKS)
+            each.locator_params(axis="x", nbins=int(width / columns))  # an inch for a number
         yield drawing, [*axes[:count]]
 
 

@@ -67,7 +67,7 @@ def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(sce
     assert len(last) == 6
     assert {row["unit"] for row in rows} == {"mm"}
     assert last[0]["load B.displacement.y, mm"] == rows[3]["value"]
-    assert "cantilever: 6 unchecked." in capsys.readouterr().out
+    assert "cantilever: 6 points, unchecked." in capsys.readouterr().out
     page = (tmp_path / "s" / "index.html").read_text("utf-8")
     assert "t = 1.6 mm to t = 2.4 mm (3 values)" in page
     lines = len((tmp_path / "s" / "outcomes.jsonl").read_text("utf-8").splitlines())
