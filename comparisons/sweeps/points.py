@@ -12,7 +12,7 @@ from scipy.stats import qmc
 
 from comparisons.formats import file_unit, joined, with_symbols
 from cprbm_scene import Array, Mistake, Scene, SceneError
-from cprbm_scene.mistakes import refuse_broken
+from cprbm_scene.mistakes import first_broken, mistake, refuse_broken
 from cprbm_scene.units import rows_of, text_of
 
 Point = Mapping[str, float]
@@ -94,11 +94,11 @@ def axis_of(text: str, in_si: InSI) -> Axis:
     """
     found = _VARIED.fullmatch(text)
     if found is None or found["count"] in ("0", "1"):
-        raise _refused("--vary", repr(text), "NAME=FIRST..LAST:COUNT with two values or more, as t=1.8mm..2.2mm:11")
+        raise mistake(repr(text), "NAME=FIRST..LAST:COUNT with two values or more, as t=1.8mm..2.2mm:11", "--vary")
     name, last = found["name"], found["high"]
     low, high = in_si(name, found["low"]), in_si(name, last)
     if low == high:
-        raise _refused("--vary", repr(text), "two different values")
+        raise mistake(repr(text), "two different values", "--vary")
     parts = _QUANTITY.fullmatch(last)
     number, unit = (float(parts["number"]), parts["unit"]) if parts else (0.0, "")
     count = int(found["count"] or 0)
@@ -111,15 +111,18 @@ def grid(axes: Sequence[Axis]) -> tuple[Point, ...]:
     Raises:
         SceneError: two axes have one name, an axis has no number of values, or there are too many points.
     """
-    names = [axis.name for axis in axes]
-    if len(set(names)) < len(names):
-        raise _refused("--vary", f"{', '.join(names)}", "a parameter once")
-    for axis in axes:
-        if not axis.count:
-            raise _refused("--vary", f"{axis.name} without a number of values", f"{axis.name}=FIRST..LAST:COUNT")
-    number = math.prod(axis.count for axis in axes)
-    if number > MOST:
-        raise _refused("--vary", f"{number} points", f"at most {MOST}")
+    names, number = [axis.name for axis in axes], math.prod(axis.count for axis in axes)
+    refuse_broken(
+        *first_broken(
+            len(set(names)) < len(names) and Mistake("--vary", ", ".join(names), "a parameter once"),
+            *(
+                not axis.count
+                and Mistake("--vary", f"{axis.name} without a number of values", f"{axis.name}=FIRST..LAST:COUNT")
+                for axis in axes
+            ),
+            number > MOST and Mistake("--vary", f"{number} points", f"at most {MOST}"),
+        )
+    )
     return tuple(dict(zip(names, values, strict=True)) for values in product(*(axis.values() for axis in axes)))
 
 
@@ -131,9 +134,9 @@ def sample(text: str, axes: Sequence[Axis]) -> tuple[Point, ...]:
     """
     found = re.fullmatch(r"(sobol|lhs):(\d{1,6})", text)
     if found is None or not 1 <= int(found[2]) <= MOST:
-        raise _refused("--sample", repr(text), f"sobol:K or lhs:K with K from 1 to {MOST}, or a file that ends in .csv")
+        raise mistake(repr(text), f"sobol:K or lhs:K with K from 1 to {MOST}, or a file that ends in .csv", "--sample")
     if not axes:
-        raise _refused("--sample", f"{text} without a range", "--vary NAME=FIRST..LAST, or a parameter with a range")
+        raise mistake(f"{text} without a range", "--vary NAME=FIRST..LAST, or a parameter with a range", "--sample")
     count, size = int(found[2]), len(axes)
     if found[1] == "lhs":
         unit = qmc.LatinHypercube(size, seed=SEED).random(count)
@@ -208,7 +211,3 @@ def chosen_for_check(points: Sequence[Point], axes: Sequence[Axis], count: int) 
         found.append(int(np.argmin(away)))
         left[found[-1]] = False
     return frozenset(found)
-
-
-def _refused(key: str, found: str, allowed: str) -> SceneError:
-    return SceneError([Mistake(key, found, allowed)])
