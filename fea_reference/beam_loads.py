@@ -131,12 +131,12 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     e, xi = sections.locate(zeta)
     theta, local, twice = _section_angle(sections, zeta)
     bow = 6.0 * xi * (1.0 - xi)
-    gamma, leaning = model.sheared(beam, e, z)
-    theta = theta - bow * gamma
-    local[:6] -= bow * leaning.by
-    twice[:6, :6] -= bow * leaning.by_twice
+    chords, at = model.chords(z), beam.elements.start + e
+    theta = theta - bow * chords.shear[at]
+    local[:6] -= bow * chords.shear_by[:, at]
+    twice[:6, :6] -= bow * chords.shear_by_twice[:, :, at]
     rest, give = model.loaded.recall(model.start, part.name, lambda: _moment_at_rest(model, part))
-    chain = model.chain_of_sections(beam, e)
+    chain = model.chain_of_sections(beam, e, z)
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
     no_force, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
@@ -148,7 +148,7 @@ def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
     sections = model.line_of_sections(beam, model.start)
     e, xi = sections.locate(zeta)
-    gamma, _ = model.sheared(beam, e, model.start)
+    gamma = model.chords(model.start).shear[beam.elements.start + e]
     (theta,) = _section_angle(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
     return np.array((theta, _mutual_work(model, part, part, sections)))
 

@@ -32,6 +32,7 @@ zone, is of second order.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -153,18 +154,21 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     x, n = as_plane(line.nodes[e] + there.way), as_plane(toward)
     tau = np.array([n[1], -n[0]])
 
-    H = shapes(zeta - e)
-    g_q, p = projected_gradient(n, H, line, e), projected_gradient(tau, H, line, e)
-    own = projected_hessian(n, H, line, e)
-    if body.dofs is not None:
-        arm = turned(np.array(circle.arm), z[body.dofs[2]])
-        across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
-        g_q = np.concatenate([g_q, -n, -across[None] @ n])
-        p = np.concatenate([p, -tau, -across[None] @ tau])
-    g_qq = p[:, None] * p[None, :] / r
-    g_qq[:7, :7] += own
-    if body.dofs is not None:
-        g_qq[9, 9] += turned(np.array(circle.arm), z[body.dofs[2]]) @ n
+    H, moves = shapes(zeta - e), body.dofs is not None
+    arm = turned(np.array(circle.arm), model.body_state(body, z)[2])
+    across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
+
+    def by(v: Array) -> Array:
+        own = projected_gradient(v, H, line, e)
+        return np.concatenate([own, -v, -across[None] @ v]) if moves else own
+
+    def by_twice() -> Array:
+        p = by(tau)
+        g_qq = (p / r)[:, None] * p
+        g_qq[:7, :7] += projected_hessian(n, H, line, e)
+        if moves:
+            g_qq[9, 9] += arm @ n
+        return np.asarray(g_qq)
 
     g = g - penalty.lead
     weight = penalty.stiffness * ds
@@ -176,8 +180,8 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
         points_per_place=points_per_place,
         stiffness=weight,
         gap=g,
-        gap_by=g_q,
-        gap_by_twice=g_qq,
+        gap_by=cache(lambda: by(n)),
+        gap_by_twice=cache(by_twice),
         zeta=zeta,
         zeta_m=np.empty(0),
         x=x,

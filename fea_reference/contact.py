@@ -41,7 +41,9 @@ and with δ = p/ε the pressure acts at zero gap; :mod:`fea_reference.circle` de
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -330,7 +332,7 @@ class _GaussPoints:
     """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap.
 
     ``ds`` (k,) is arc length of the first beam. ``by`` (14, k) and ``by_twice`` (14, 14, k) are derivatives of the
-    gap by the element unknowns of the first line, then of the second.
+    gap by the element unknowns of the first line, then of the second, evaluated at the first call.
     """
 
     e: Ints
@@ -341,8 +343,8 @@ class _GaussPoints:
     x_m: Array
     ds: Array
     g: Array
-    by: Array
-    by_twice: Array
+    by: Callable[[], Array]
+    by_twice: Callable[[], Array]
     normal: Array
 
     def with_other(self, other: _GaussPoints, order: Ints) -> _GaussPoints:
@@ -360,8 +362,8 @@ class _GaussPoints:
             x_m=both(self.x_m, other.x),
             ds=both(self.ds, other.ds),
             g=both(self.g, other.g),
-            by=both(self.by, np.roll(other.by, _LINE, axis=0)),
-            by_twice=both(self.by_twice, np.roll(other.by_twice, (_LINE, _LINE), axis=(0, 1))),
+            by=cache(lambda: both(self.by(), np.roll(other.by(), _LINE, axis=0))),
+            by_twice=cache(lambda: both(self.by_twice(), np.roll(other.by_twice(), (_LINE, _LINE), axis=(0, 1)))),
             normal=both(self.normal, -other.normal),
         )
 
@@ -394,17 +396,31 @@ def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z:
     if pair.tapers is not None:
         g += pair.tapers.thinner(zeta, zeta_m)
 
-    H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
-    d_q = np.concatenate([projected_gradient(n, H, line, e), -projected_gradient(n, H_m, line_m, e_m)])
-    p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:_LINE]), projected_gradient(n, H_m1, line_m, e_m)])
-    pk = p[:, None] * k[None, :]
-    d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
-    if faced.fixed.any():
-        d_qq = np.where(faced.fixed, p[:, None] * p[None, :] / np.where(d == 0.0, 1.0, d), d_qq)
-    d_qq[:_LINE, :_LINE] += projected_hessian(n, H, line, e)
-    d_qq[_LINE:, _LINE:] -= projected_hessian(n, H_m, line_m, e_m)
-    return _GaussPoints(e, e_m, zeta, zeta_m, as_plane(x), as_plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
+    H, H_m = shapes(xi), shapes(xi_m)
+
+    @cache
+    def by() -> Array:
+        by_q = np.concatenate([projected_gradient(n, H, line, e), -projected_gradient(n, H_m, line_m, e_m)])
+        return np.asarray(side * by_q)
+
+    def by_twice() -> Array:
+        p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
+        # p and k by the unknowns of both lines; k has those of the second alone
+        k = projected_gradient(n, shape_slopes(xi_m), line_m, e_m)
+        a_Z, J_Z, d_Z = np.array([a, J, d]) / Z
+        if faced.fixed.any():
+            a_Z = np.where(faced.fixed, -1.0 / np.where(d == 0.0, 1.0, d), a_Z)
+            J_Z, d_Z = np.where(faced.fixed, 0.0, [J_Z, d_Z])
+        d_qq = (-a_Z * p)[:, None] * p
+        pk = (-J_Z * p)[:, None] * k
+        d_qq[:, _LINE:] += pk
+        d_qq[_LINE:] += pk.transpose(1, 0, 2)
+        d_qq[_LINE:, _LINE:] -= (d_Z * k)[:, None] * k
+        d_qq[:_LINE, :_LINE] += projected_hessian(n, H, line, e)
+        d_qq[_LINE:, _LINE:] -= projected_hessian(n, H_m, line_m, e_m)
+        return np.asarray(side * d_qq)
+
+    return _GaussPoints(e, e_m, zeta, zeta_m, as_plane(x), as_plane(x_m), ds, g, by, cache(by_twice), side * n)
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:

@@ -41,6 +41,7 @@ moment at the pin.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -233,29 +234,31 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    x = line.at(zeta)[0]
-    near = face.outline.near(view.place(zeta))
+    there = line.around(zeta)
+    x, (y, rest) = as_plane(line.nodes[e] + there.way), view.place_and_rest(there)
+    near = face.outline.near(y)
     n = view.turned(near.normal)
-    tau = np.array([n[1], -n[0]])
     r = x - view.centre[:, None]
     # the contact force needs the unrounded gap; for the interval ends rounded points suffice
-    g = face.outline.exact_distance(*view.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
+    g = face.outline.exact_distance(y, rest, near) - face.edge.at(zeta) - penalty.lead
 
     H = shapes(xi)
     moves = body.dofs is not None
-    g_q = view.by(n, H, e, r, moves=moves)
-    p = view.by(tau, H, e, r, moves=moves)
-    g_qq = near.bend * p[:, None] * p[None, :]
-    g_qq[:7, :7] += projected_hessian(n, H, line, e)
-    if moves:
-        across = np.array([-n[1], n[0]])  # across·w = −n·k × w
-        turning = np.concatenate([projected_gradient(across, H, line, e), -across])
-        g_qq[:9, 9] += turning
-        g_qq[9, :9] += turning
-        g_qq[9, 9] -= (n * r).sum(axis=0)
+
+    def by_twice() -> Array:
+        p = view.by(np.array([n[1], -n[0]]), H, e, r, moves=moves)
+        g_qq = (near.bend * p)[:, None] * p
+        g_qq[:7, :7] += projected_hessian(n, H, line, e)
+        if moves:
+            across = np.array([-n[1], n[0]])  # across·w = −n·k × w
+            turning = np.concatenate([projected_gradient(across, H, line, e), -across])
+            g_qq[:9, 9] += turning
+            g_qq[9, :9] += turning
+            g_qq[9, 9] -= (n * r).sum(axis=0)
+        return np.asarray(g_qq)
 
     ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
-    bent = _corner_terms(view, zones, kinks, penalty, quadrature, moves=moves)
+    bends = _bends(zones, kinks)
     points_per_place = count_points_per_place(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
@@ -265,26 +268,37 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         points_per_place=points_per_place,
         stiffness=weight,
         gap=g,
-        gap_by=g_q,
-        gap_by_twice=g_qq,
+        gap_by=cache(lambda: view.by(n, H, e, r, moves=moves)),
+        gap_by_twice=cache(by_twice),
         zeta=zeta,
         zeta_m=np.empty(0),
         x=x,
         x_m=x - near.distance * n,
         normal=n,
-        extra_hessian=bent,
-        sharp=bool(ends.any()) or bent is not None or bool(near.corner.any()),
+        extra_hessian=partial(_corner_terms, view, zones, bends, kinks, penalty, quadrature, moves=moves)
+        if bends
+        else None,
+        sharp=bool(ends.any()) or bool(bends) or bool(near.corner.any()),
     )
 
 
-def _corner_terms(
-    view: _View, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
-) -> Array | None:
-    """Second-derivative terms (m, m, k) of the moving places at corners; None without corners."""
+def _bends(zones: Zones, kinks: dict[float, np.int64]) -> list[tuple[int, float]]:
+    """Numbers and ends of the intervals that meet the next interval at a corner."""
     bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
-    bends = [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
-    if not bends:
-        return None
+    return [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
+
+
+def _corner_terms(
+    view: _View,
+    zones: Zones,
+    bends: list[tuple[int, float]],
+    kinks: dict[float, np.int64],
+    penalty: Penalty,
+    quadrature: int,
+    *,
+    moves: bool,
+) -> Array:
+    """Second-derivative terms (m, m, k) of the moving places at corners."""
     size = 10 if moves else 7
     terms = np.zeros((size, size, len(zones.intervals) * quadrature))
     for i, end in bends:
@@ -327,9 +341,8 @@ class _View:
         """Points y (2, k)."""
         return as_plane(self._place(self.line.around(zeta)))
 
-    def place_and_rest(self, zeta: Array) -> tuple[Array, Array]:
+    def place_and_rest(self, there: Around) -> tuple[Array, Array]:
         """Points y (2, k) and their round-off."""
-        there = self.line.around(zeta)
         value, error = summed(self.nodes[there.element], self.back * there.way)
         return as_plane(value), as_plane(error + self.rests[there.element])
 

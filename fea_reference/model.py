@@ -36,10 +36,10 @@ from cprbm_scene.statement import (
 )
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
-from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
+from fea_reference.element import Chords, ElementForces, Elements, chords, forces, reference
 from fea_reference.hermite import Index, NeutralLine, chord_speed_excess
-from fea_reference.known import Memory
-from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
+from fea_reference.known import Memory, Recent
+from fea_reference.leaning import Chain, Places, Span, own_places, places, sheared_places, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
@@ -252,7 +252,9 @@ class Model:
     ``guides`` are rows of drives with the constant value zero, and ``apart`` the ends to be assembled. ``stiffest``
     is the largest 12 EI/h² of the elements, and ``moving`` are the motions among the unknowns.
 
-    Memories of results by state: ``bends`` element forces, ``lines`` neutral lines by beam, ``discs`` bounding discs
+    ``spans`` are the beams' elements by name, and ``placed`` the unknowns at places by beams and elements.
+
+    Memories of results by state: ``chorded`` chords and ``bends`` forces of elements, ``lines`` neutral lines by beam, ``discs`` bounding discs
     and ``distances`` their distances from edges (:mod:`fea_reference.far`), ``surveys`` gaps of beams, ``overlaps``
     zones of contacts, ``leads`` zones on rigid bodies with a lead and their corners, ``touches`` evaluated contacts,
     ``loaded`` initial places of loads on beams.
@@ -277,6 +279,9 @@ class Model:
     stiffest: float
     moving: Index
     patterns: Patterns = field(repr=False)
+    spans: dict[str, Span] = field(repr=False)
+    placed: Recent[tuple[str | bytes, ...], Places] = field(default_factory=Recent, repr=False)
+    chorded: Memory[None, Chords] = field(default_factory=Memory, repr=False)
     bends: Memory[None, ElementForces] = field(default_factory=Memory, repr=False)
     lines: Memory[str | tuple[str, bytes], NeutralLine] = field(default_factory=Memory, repr=False)
     discs: Memory[str, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
@@ -313,16 +318,20 @@ class Model:
         """The beam of the given name."""
         return next(beam for beam in self.beams if beam.name == name)
 
+    def chords(self, z: State) -> Chords:
+        """Chords of all elements in state ``z``."""
+        return self.chorded.recall(z, None, lambda: chords(self.elements, self.element_dofs, z))
+
     def bend(self, z: State) -> ElementForces:
         """Forces, stiffness and energy of all elements in state ``z``."""
-        return self.bends.recall(z, None, lambda: forces(self.elements, self.element_dofs, z))
+        return self.bends.recall(z, None, lambda: forces(self.elements, self.chords(z), z.values[self.element_dofs[6]]))
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
         return self.lines.recall(z, beam.name, lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
-        return self._through(beam, tangent_angles(self.elements, self._span(beam), z), z)
+        return self._through(beam, tangent_angles(self.spans[beam.name], self.chords(z).shear[beam.elements], z), z)
 
     def line_of_sections(self, beam: BeamPart, z: State) -> NeutralLine:
         """The neutral line with the sections' rotations as tangents, without the shear angle."""
@@ -350,37 +359,34 @@ class Model:
     def _separate_line(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         nodes = np.stack([e, e + 1], axis=1).ravel()
         dofs = self.node_dofs[:, beam.nodes][:, nodes]
-        gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
+        gamma = self.chords(z).shear[beam.elements][e]
         angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
         dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
         excess, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
         return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, excess)
 
     def separate_chain(self, beam: BeamPart, e: Index, z: State) -> Chain:
-        """Chain rule from the elements (k,) of :meth:`apart_at_nodes` to the unknowns."""
-        return sheared_chain(self.elements, self._span(beam), e, z)
+        """Chain rule from the elements (k,) of :meth:`separate_elements` to the unknowns."""
+        return Chain(sheared_places(self.spans[beam.name], e), self.chords(z))
 
-    def chain(self, places: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
+    def places(self, on: Sequence[tuple[BeamPart, Index]], body: Index | None = None) -> Places:
+        """Unknowns at line elements (k,) of beams, and a ``body``'s three unknowns."""
+
+        def find() -> Places:
+            k = on[0][1].size
+            moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
+            return places(tuple((self.spans[beam.name], e) for beam, e in on), moved)
+
+        key = (b"" if body is None else body.tobytes(), *(part for beam, e in on for part in (beam.name, e.tobytes())))
+        return self.placed.recall(key, find)
+
+    def chain(self, on: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
         """Chain rule from line elements (k,) of beams, and a ``body``'s three unknowns, to the unknowns."""
-        k = places[0][1].size
-        moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
-        return chain(self.elements, tuple((self._span(beam), e) for beam, e in places), moved, z)
+        return Chain(self.places(on, body), self.chords(z))
 
-    def chain_of_sections(self, beam: BeamPart, e: Index) -> Chain:
+    def chain_of_sections(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from :meth:`line_of_sections` to the unknowns, at elements (k,) of a beam."""
-        return own_chain(self._span(beam), e)
-
-    def sheared(self, beam: BeamPart, e: Index, z: State) -> tuple[Array, Shear]:
-        """Shear angles (k,) of elements (k,) of a beam, and their derivatives by the nodes' six unknowns."""
-        span = self._span(beam)
-        gamma = shear_angle(self.elements, span.part, span.dofs, z)[e]
-        return gamma, shear(self.elements, span.part.start + e, span.dofs[:, e], z)
-
-    def _span(self, beam: BeamPart) -> Span:
-        own = {stop.end for stop in self.stops if stop.owner}
-        ends = (("start", beam.record.start), ("end", beam.record.end))
-        welded = tuple(isinstance(end, WeldedEnd) or (beam.name, which) in own for which, end in ends)
-        return Span(beam.elements, self.element_dofs[:, beam.elements], (welded[0], welded[1]))
+        return Chain(own_places(self.spans[beam.name], e), self.chords(z))
 
     def body_state(self, body: BodyPart, z: State) -> Array:
         """(X, Y, φ) of a body, zero for a fixed body."""
@@ -538,6 +544,7 @@ def build(scene: Scene, settings: Settings) -> Model:
 
     start = np.zeros(size)
     start[node_dofs] = np.stack([nodes[:, 0], nodes[:, 1], angles])
+    element_dofs = np.asarray(basis.element_dofs, dtype=np.int64)
     return Model(
         units,
         tuple(beams),
@@ -551,14 +558,24 @@ def build(scene: Scene, settings: Settings) -> Model:
         tuple(apart),
         elements,
         node_dofs,
-        np.asarray(basis.element_dofs, dtype=np.int64),
+        element_dofs,
         np.arange(first_row, size),
         size,
         State.of(start),
         max(12.0 * beam.stiffest / float(elements.length[beam.elements.start]) ** 2 for beam in beams),
         np.concatenate([node_dofs.ravel(), *(body.dofs for body in bodies if body.dofs is not None)]),
         Patterns(size),
+        {part.name: _span(part, stops, elements, element_dofs) for part in beams},
     )
+
+
+def _span(beam: BeamPart, stops: Sequence[StopPart], elements: Elements, dofs: Index) -> Span:
+    """The elements of a beam."""
+    own = {stop.end for stop in stops if stop.owner}
+    ends = (("start", beam.record.start), ("end", beam.record.end))
+    start, end = (isinstance(end, WeldedEnd) or (beam.name, which) in own for which, end in ends)
+    slips = bool(elements.slip[:, beam.elements].any())
+    return Span(beam.elements, dofs[:, beam.elements], (start, end), slips)
 
 
 def _on_beam(

@@ -4,7 +4,7 @@ The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z)
 tangent is the second derivative, symmetric and indefinite.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -34,13 +34,33 @@ _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
 @dataclass(frozen=True)
+class Derivative:
+    """Tangent of a system, assembled and factorised where needed."""
+
+    assembled: Callable[[], csc_matrix]
+
+    @cached_property
+    def matrix(self) -> csc_matrix:
+        """The sparse matrix (size, size)."""
+        return self.assembled()
+
+    @cached_property
+    def factors(self) -> SuperLU | None:
+        """LU factors; None for a singular matrix."""
+        try:
+            return factors(self.matrix)
+        except RuntimeError:  # exactly singular
+            return None
+
+
+@dataclass(frozen=True)
 class System:
     """Residual and tangent in a state ``z``.
 
     Attributes:
         loads: loads on beams with a nonzero value.
         residual: unbalanced generalised forces and constraint violations, (size,).
-        tangent: derivative of the residual, sparse (size, size).
+        derivative: derivative of the residual.
         scale: the largest generalised force in equilibrium; EI/length² if all forces are round-off.
         floor: round-off of the residual. An element's end force is 12 EI/h² times the angle between tangent and
             chord, so that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A
@@ -51,7 +71,7 @@ class System:
     z: State
     acting: Acting
     residual: Array
-    tangent: csc_matrix
+    derivative: Derivative
     elements: ElementForces
     touches: tuple[Touch, ...]
     loads: tuple[BeamLoad, ...]
@@ -59,17 +79,16 @@ class System:
     floor: float
     significant: bool
 
+    @property
+    def tangent(self) -> csc_matrix:
+        """The derivative of the residual, sparse (size, size)."""
+        return self.derivative.matrix
+
     def solve(self, right: Array) -> Array | None:
         """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
-        solution = None if self._factors is None else self._factors.solve(right)
+        factors_here = self.derivative.factors
+        solution = None if factors_here is None else factors_here.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
-
-    @cached_property
-    def _factors(self) -> SuperLU | None:
-        try:
-            return factors(self.tangent)
-        except RuntimeError:  # exactly singular
-            return None
 
 
 def factors(matrix: csc_matrix) -> SuperLU:
@@ -94,7 +113,8 @@ def with_stiffness_factor(model: Model, system: System, contact: Touch, factor: 
     change = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
         contact.pushes
     )
-    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(contact.dofs, change)]))
+    changed = system.tangent + model.patterns.matrix([Block(contact.dofs, change)])
+    return replace(system, derivative=Derivative(lambda: changed))
 
 
 def assemble(
@@ -156,11 +176,8 @@ def _assembled(
     elements = model.bend(z)
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
-    entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
     pressing = [(contact, contact.gradient) for contact in touches if contact.closed]
-    for contact, gradient in pressing:
-        parts.append((contact.dofs, gradient))
-        entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
+    parts += [(contact.dofs, gradient) for contact, gradient in pressing]
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
@@ -168,14 +185,21 @@ def _assembled(
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))
-        entries.append(Block(load.dofs, -load.hessian))
     for dofs, gradient in parts:
         residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
-        unknowns = np.arange(model.size)
-        entries.append(Single(unknowns, unknowns, drag.weights))
-    tangent = model.patterns.matrix(entries)
+
+    def tangent() -> csc_matrix:
+        entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
+        for contact, _ in pressing:
+            entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
+        entries += [Block(load.dofs, -load.hessian) for load in loads]
+        if drag is not None:
+            unknowns = np.arange(model.size)
+            entries.append(Single(unknowns, unknowns, drag.weights))
+        return model.patterns.matrix(entries)
+
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
     balanced += [abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart]
@@ -185,7 +209,16 @@ def _assembled(
     floor += rounded
     significant = largest > NOTHING * floor
     return System(
-        z, acting, residual, tangent, elements, touches, loads, largest if significant else 1.0, floor, significant
+        z,
+        acting,
+        residual,
+        Derivative(tangent),
+        elements,
+        touches,
+        loads,
+        largest if significant else 1.0,
+        floor,
+        significant,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -219,8 +220,8 @@ class Touch:
 
     ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
     (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the unknowns of the first line, then of the
-    second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as
-    ``points_per_place`` consecutive points lie in the same elements.
+    second or a moving body, evaluated at the first call. ``chain`` continues to all unknowns, at c =
+    k/points_per_place places, as ``points_per_place`` consecutive points lie in the same elements.
 
     ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.
     ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge. ``normal`` (2, k)
@@ -237,8 +238,8 @@ class Touch:
     points_per_place: int
     stiffness: Array
     gap: Array
-    gap_by: Array
-    gap_by_twice: Array
+    gap_by: Callable[[], Array]
+    gap_by_twice: Callable[[], Array]
     zeta: Array
     zeta_m: Array
     x: Array
@@ -246,7 +247,7 @@ class Touch:
     normal: Array
     missing: float = 0.0
     missing_share: float = 0.0
-    extra_hessian: Array | None = None
+    extra_hessian: Callable[[], Array] | None = None
     sharp: bool = False
 
     @property
@@ -267,24 +268,26 @@ class Touch:
     @property
     def gradient(self) -> Array:
         """Derivative (M, c) of the contact energy by the unknowns."""
-        return self.chain.gradient(self._summed(-self.pushes * self.gap_by))
+        return self.chain.gradient(self._summed(-self.pushes * self.gap_by()))
 
     @property
     def mean(self) -> Array:
         """Derivative (M, c) of the stiffness-weighted mean gap by the unknowns."""
-        return self.chain.gradient(self._summed(self.stiffness / self.stiffness.sum() * self.gap_by))
+        return self.chain.gradient(self._summed(self.stiffness / self.stiffness.sum() * self.gap_by()))
 
     def hessian(self, pushes: Array) -> Array:
         """Second derivative (M, M, c) of the contact energy by the unknowns, for point forces ``pushes`` (k,)."""
-        local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
+        by = self.gap_by()
+        local = (self.stiffness * by)[:, None] * by - pushes * self.gap_by_twice()
         if self.extra_hessian is not None:
-            local += self.extra_hessian
-        return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
+            local += self.extra_hessian()
+        return self.chain.hessian(self._summed(local), self._summed(-pushes * by))
 
     def predicted_forces(self, step: Array) -> Array:
         """Point forces (k,) after a ``step`` (size,) of the unknowns, to first order."""
-        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.points_per_place, axis=1)
-        return np.asarray(self.pushes - self.stiffness * (self.gap_by * local).sum(axis=0))
+        by = self.gap_by()
+        local = np.repeat(self.chain.local(step, len(by)), self.points_per_place, axis=1)
+        return np.asarray(self.pushes - self.stiffness * (by * local).sum(axis=0))
 
     def _summed(self, at_points: Array) -> Array:
         return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.points_per_place).sum(axis=-1))
