@@ -23,11 +23,12 @@ without negative pivot. Round-off moves a pivot by the unit round-off times the 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky_banded, eigh_tridiagonal, null_space
 from scipy.linalg.lapack import dpbtrs
-from scipy.sparse import csr_array
+from scipy.sparse import csc_matrix, csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from cprbm_scene.answer import Array
@@ -66,7 +67,8 @@ def softest(model: Model, system: System) -> Mode:
     a proof a smaller value with a proof is returned. If even zero has none, the result is negative: a Ritz value
     above a proven negative bound. Then a curvature of this size is negative, or round-off hides the sign.
     """
-    on, root = _feasible(model, system), np.sqrt(lumped_mass(model))
+    on = _feasible(model, system)
+    root = np.sqrt(on.mass)
 
     def factor(sigma: float) -> Array | None:
         """Cholesky factor of A − σ M; None for a negative pivot."""
@@ -97,9 +99,9 @@ def moment_mode(model: Model, system: System, drag: float) -> Array:
     """
     on, moments = _feasible(model, system), np.zeros(model.size)
     factor = _factor(on.stiffness + drag * on.inertia)
-    lengths = lumped_mass(model)[model.node_dofs[2]]
+    lengths = on.mass[model.node_dofs[2]]
     moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths))
-    return moments if factor is None else _solve(on, factor, moments)
+    return moments if factor is None else on.solve(factor, moments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,16 +109,23 @@ class _Feasible:
     """The feasible directions, in an order with a small bandwidth of A.
 
     Attributes:
-        T: motions of all unknowns by the directions (size, q); back: the transpose.
-        place: position (q,) of every direction in this order.
+        rows, columns, entries: T, motions of all unknowns (size,) by the directions (q,).
+        mass: M, (size,).
         stiffness, inertia: lower halves of A and T^T M T (width + 1, q), in LAPACK's band storage.
     """
 
-    T: csr_array
-    back: csr_array
-    place: Index
+    rows: Index
+    columns: Index
+    entries: Array
+    mass: Array
     stiffness: Array
     inertia: Array
+
+    def solve(self, factor: Array, forces: Array) -> Array:
+        """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
+        right = np.bincount(self.columns, self.entries * forces[self.rows], factor.shape[1])
+        directions = dpbtrs(factor, right, lower=1)[0]
+        return np.bincount(self.rows, self.entries * directions[self.columns], forces.size)
 
 
 def _factor(band: Array) -> Array | None:
@@ -129,30 +138,133 @@ def _factor(band: Array) -> Array | None:
 
 def _feasible(model: Model, system: System) -> _Feasible:
     """T, A and the lumped mass on the feasible directions."""
-    tangent = system.tangent
-    K = csr_array((tangent.data, tangent.indices, tangent.indptr), tangent.shape)  # symmetric
-    T = _directions(model, system, K)
-    back = T.T.tocsr()
-    KT = K @ T
+    K, mass = system.tangent, lumped_mass(model)
+    rows, columns, entries = _directions(model, system, K)
     axial = model.element_dofs[6]
-    BT = KT[axial]
-    compliance = np.maximum(-tangent.diagonal()[axial], model.elements.length / _STIFF)
-    BT.data /= np.sqrt(np.repeat(compliance, np.diff(BT.indptr)))
-    A = csr_array(back @ KT + BT.T.tocsr() @ BT)
-    order = reverse_cuthill_mckee(A, symmetric_mode=True)
-    place = np.empty(order.size, dtype=np.int64)
-    place[order] = np.arange(order.size)
-    mass = np.repeat(lumped_mass(model), np.diff(T.indptr))
-    stiffness, inertia = _bands(place, A, csr_array(back @ csr_array((mass * T.data, T.indices, T.indptr), T.shape)))
-    return _Feasible(T, back, place, stiffness, inertia)
+    layout = _layout(*(of.tobytes() for of in (K.indices, K.indptr.astype(np.int64), rows, columns, axial)))
+    compliance = np.maximum(-K.data[layout.diagonal], model.elements.length / _STIFF)
+    stretching = K.data[layout.first] * K.data[layout.second] / compliance[layout.element]
+    pairs = entries[layout.left] * entries[layout.right]
+    stiffness = layout.band(np.concatenate([K.data[layout.own], stretching]) * pairs)
+    inertia = layout.band_of_mass(mass[rows[layout.mass_left]] * entries[layout.mass_left] * entries[layout.mass_right])
+    return _Feasible(rows, layout.place[columns], entries, mass, stiffness, inertia)
 
 
-def _directions(model: Model, system: System, K: csr_array) -> csr_array:
-    """T: all motions by the independent motions; zero rows for forces and multipliers."""
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """Positions of all terms of A and T^T M T, for matrices K and T of a given pattern.
+
+    Attributes:
+        place: position (q,) of every direction in the order with a small bandwidth.
+        own: entries of K in the terms T^T H T.
+        first, second, element: entries of K in the terms T^T B^T (c l)⁻¹ B T, and their element.
+        left, right: entries of T in all these terms; at: position of the terms in the band.
+        mass_left, mass_right, mass_at: the same for T^T M T.
+        diagonal: entries of K of every element's axial force by itself.
+        shape: of the band.
+    """
+
+    place: Index
+    own: Index
+    first: Index
+    second: Index
+    element: Index
+    left: Index
+    right: Index
+    at: Index
+    mass_left: Index
+    mass_right: Index
+    mass_at: Index
+    diagonal: Index
+    shape: tuple[int, int]
+
+    def band(self, terms: Array) -> Array:
+        """The sum of the terms of A in band storage."""
+        return np.bincount(self.at, terms, self.shape[0] * self.shape[1]).reshape(self.shape)
+
+    def band_of_mass(self, terms: Array) -> Array:
+        """The sum of the terms of T^T M T in band storage."""
+        return np.bincount(self.mass_at, terms, self.shape[0] * self.shape[1]).reshape(self.shape)
+
+
+@lru_cache(maxsize=32)
+def _layout(indices: bytes, indptr: bytes, rows: bytes, columns: bytes, axial: bytes) -> _Layout:
+    """Layout for the patterns of K and T (sorted by rows), and the unknowns of the axial forces."""
+    K_columns, pointer, T_rows, T_columns, forces = (
+        np.frombuffer(of, dtype=kind)
+        for of, kind in ((indices, np.int32), *((of, np.int64) for of in (indptr, rows, columns, axial)))
+    )
+    K_rows = np.repeat(np.arange(pointer.size - 1), np.diff(pointer))
+    begin = np.searchsorted(T_rows, np.arange(pointer.size))
+    count = np.diff(begin)
+
+    def of_motions(here: Index, there: Index) -> tuple[Index, Index, Index]:
+        """Numbers of the pairs of unknowns with pairs of entries of T, and these entries."""
+        return _all_pairs(begin[here], count[here], begin[there], count[there])
+
+    own, own_left, own_right = of_motions(K_rows, K_columns)
+    element = np.full(pointer.size - 1, -1)
+    element[forces] = np.arange(forces.size)
+    stretching = np.flatnonzero((element[K_rows] >= 0) & (count[K_columns] > 0))
+    start = np.searchsorted(K_rows[stretching], forces)
+    many = np.searchsorted(K_rows[stretching], forces, side="right") - start
+    of_element, first, second = _all_pairs(start, many, start, many)
+    first, second = stretching[first], stretching[second]
+    pair, left, right = of_motions(K_columns[first], K_columns[second])
+    diagonal = np.flatnonzero((element[K_rows] >= 0) & (K_rows == K_columns))
+    diagonal = diagonal[np.argsort(element[K_rows[diagonal]])]
+
+    left, right = np.concatenate([own_left, left]), np.concatenate([own_right, right])
+    size = int(T_columns.max(initial=-1)) + 1
+    pattern = csr_array((np.ones(left.size), (T_columns[left], T_columns[right])), (size, size))
+    order = reverse_cuthill_mckee(pattern, symmetric_mode=True)
+    place = np.empty(size, dtype=np.int64)
+    place[order] = np.arange(size)
+
+    def lower(left: Index, right: Index) -> tuple[Index, Index]:
+        """Terms in the lower half, and their distances from the diagonal."""
+        below = place[T_columns[left]] - place[T_columns[right]]
+        kept = np.flatnonzero(below >= 0)
+        return kept, below[kept]
+
+    _, mass_left, mass_right = of_motions(np.arange(pointer.size - 1), np.arange(pointer.size - 1))
+    (kept, below), (mass_kept, mass_below) = lower(left, right), lower(mass_left, mass_right)
+    mass_left, mass_right = mass_left[mass_kept], mass_right[mass_kept]
+    in_own = kept[kept < own.size]
+    in_stretching = kept[in_own.size :] - own.size
+    left, right, pair = left[kept], right[kept], pair[in_stretching]
+    return _Layout(
+        place,
+        own[in_own],
+        first[pair],
+        second[pair],
+        of_element[pair],
+        left,
+        right,
+        below * size + place[T_columns[right]],
+        mass_left,
+        mass_right,
+        mass_below * size + place[T_columns[mass_right]],
+        diagonal,
+        (int(below.max(initial=0)) + 1, size),
+    )
+
+
+def _all_pairs(start: Index, count: Index, other_start: Index, other_count: Index) -> tuple[Index, Index, Index]:
+    """Numbers of two ranges, and all pairs of a number of the first with a number of the second."""
+    number = np.repeat(np.arange(count.size), count * other_count)
+    ends = np.cumsum(count * other_count)
+    within = np.arange(number.size) - (ends - count * other_count)[number]
+    of_first, of_second = np.divmod(within, np.maximum(other_count[number], 1))
+    return number, start[number] + of_first, other_start[number] + of_second
+
+
+def _directions(model: Model, system: System, K: csc_matrix) -> tuple[Index, Index, Array]:
+    """T, sorted by rows: all motions by the independent motions; no entries for forces and multipliers."""
     joints = [joint for joint in model.joints if not model.free(joint, system.acting)]
     stops = [stop for stop, _ in acting_stops(model.stops, system.acting)]
     # a row of a joint or stop is the node's motion minus the body's contribution
-    row_of = {int(dof): int(row) for joint in joints for dof, row in zip(joint.dofs, joint.rows, strict=False)}
+    row_of = {dof: row for joint in joints for dof, row in zip(joint.dofs.tolist(), joint.rows.tolist(), strict=False)}
     row_of |= {stop.theta: stop.row for stop in stops}
     free = np.ones(model.size, dtype=bool)
     free[list(row_of)] = False
@@ -165,24 +277,32 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
         constrained = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
         constrained += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
-        free_motions = null_space(K[constrained][:, dofs].toarray()) if constrained else np.eye(dofs.size)
+        free_motions = null_space(_lines(K, constrained)[:, dofs]) if constrained else np.eye(dofs.size)
         here = count + np.arange(free_motions.shape[1])
         count += here.size
         of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, free_motions, strict=True)}
     couplings = [(dof, dof, 1.0) for dof in of_bodies]
-    for dof, row in row_of.items():
-        entry = slice(K.indptr[row], K.indptr[row + 1])
-        couplings += [
-            (dof, int(other), -float(value))
-            for other, value in zip(K.indices[entry], K.data[entry], strict=True)
-            if int(other) in of_bodies
-        ]
+    moved = list(of_bodies)
+    if moved:
+        for (dof, _), line in zip(row_of.items(), _lines(K, list(row_of.values()))[:, moved], strict=True):
+            couplings += [(dof, moved[i], -float(line[i])) for i in np.flatnonzero(line)]
     for dof, other, value in couplings:
         here, line = of_bodies[other]
         rows.append(np.full(here.size, dof))
         columns.append(here)
         entries.append(value * line)
-    return csr_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (model.size, count))
+    all_rows = np.concatenate(rows)
+    order = np.argsort(all_rows, kind="stable")
+    return all_rows[order], np.concatenate(columns)[order], np.concatenate(entries)[order]
+
+
+def _lines(K: csc_matrix, rows: list[int]) -> Array:
+    """Rows (k, size) of a symmetric matrix."""
+    lines = np.zeros((len(rows), K.shape[0]))
+    for line, row in zip(lines, rows, strict=True):
+        entry = slice(K.indptr[row], K.indptr[row + 1])
+        line[K.indices[entry]] = K.data[entry]
+    return lines
 
 
 def _connected_bodies(model: Model) -> list[set[int]]:
@@ -193,19 +313,6 @@ def _connected_bodies(model: Model) -> list[set[int]]:
         groups = [group for group in groups if group not in joined]
         groups.append(set[int]().union(*joined))
     return groups
-
-
-def _bands(place: Index, *matrices: csr_array) -> list[Array]:
-    """Lower bands of symmetric matrices (m, m) in the order ``place``, all of the largest width."""
-    entries = [(np.repeat(place, np.diff(matrix.indptr)), place[matrix.indices], matrix.data) for matrix in matrices]
-    width = max(int((rows - columns).max(initial=0)) for rows, columns, _ in entries)
-    bands = []
-    for rows, columns, data in entries:
-        lower = rows >= columns
-        band = np.zeros((width + 1, place.size))
-        band[(rows - columns)[lower], columns[lower]] = data[lower]
-        bands.append(band)
-    return bands
 
 
 def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
@@ -219,7 +326,7 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     beside: list[float] = []
     for step in range(_STEPS):
         Q[step] = v
-        w = root * _solve(on, factor, root * v)
+        w = root * on.solve(factor, root * v)
         diagonal.append(float(v @ w))
         so_far = Q[: step + 1]
         w -= so_far.T @ (so_far @ w)
@@ -235,13 +342,6 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     u = np.zeros(root.size)
     u[moving] = (so_far.T @ vectors[:, -1])[moving] / root[moving]
     return 1.0 / float(values[-1]), u
-
-
-def _solve(on: _Feasible, factor: Array, forces: Array) -> Array:
-    """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
-    right = np.empty(on.place.size)
-    right[on.place] = on.back @ forces
-    return np.asarray(on.T @ dpbtrs(factor, right, lower=1)[0][on.place])
 
 
 def _below_zero(factor: Callable[[float], Array | None]) -> float:

@@ -207,23 +207,6 @@ class DrivePart:
     direction: Array | None
     unit: float
 
-    def motion(self, X: Array) -> float:
-        """The prescribed motion as a function of the body's (X, Y, φ)."""
-        if self.direction is None:
-            return float(X[2])
-        return float(self.direction @ (X[:2] + turned(self.arm, X[2]) - self.arm))
-
-    def gradient(self, phi: float) -> Array:
-        """Derivative of the motion by (X, Y, φ)."""
-        if self.direction is None:
-            return np.array([0.0, 0.0, 1.0])
-        arm = turned(self.arm, phi)
-        return np.array([*self.direction, arm[0] * self.direction[1] - arm[1] * self.direction[0]])
-
-    def second(self, phi: float) -> float:
-        """Second derivative of the motion by φ, the only nonzero second derivative."""
-        return 0.0 if self.direction is None else -float(self.direction @ turned(self.arm, phi))
-
 
 @dataclass(frozen=True, slots=True)
 class ApartPart:
@@ -254,10 +237,11 @@ class Model:
 
     ``spans`` are the beams' elements by name, and ``placed`` the unknowns at places by beams and elements.
 
-    Memories of results by state: ``chorded`` chords and ``bends`` forces of elements, ``lines`` neutral lines by beam, ``discs`` bounding discs
-    and ``distances`` their distances from edges (:mod:`fea_reference.far`), ``surveys`` gaps of beams, ``overlaps``
-    zones of contacts, ``leads`` zones on rigid bodies with a lead and their corners, ``touches`` evaluated contacts,
-    ``loaded`` initial places of loads on beams.
+    Memories of results by state: ``chorded`` chords and ``bends`` forces of elements, ``lines`` neutral lines by
+    beam, ``discs`` bounding discs and ``distances`` their distances from edges (:mod:`fea_reference.far`),
+    ``surveys`` gaps of beams, ``overlaps`` zones of contacts, ``leads`` zones on rigid bodies with a lead and their
+    corners, ``touches`` evaluated contacts, ``loaded`` initial places of loads on beams. A remembered value holds no
+    state: the memory would keep the state alive.
     """
 
     units: Units
