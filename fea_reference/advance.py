@@ -29,7 +29,7 @@ def advance(model: Model, z: State, step: Array) -> State:
         # change of every chord without cancellation: (1 + stretch) R(turn) minus the identity
         along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
         changes = np.array([along * dx - across * dy, across * dx + along * dy])
-        motion[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+        motion[dofs[:, 1:]] = step[dofs[:, :1]] + changes.cumsum(axis=1)
     return z.moved(motion)
 
 
@@ -41,7 +41,7 @@ def transported(model: Model, before: State, now: State, rate: Array) -> Array:
         _, _, turn, stretch = _chords(dofs, before, rate)
         dx, dy = now.difference(dofs[:, 1:], dofs[:, :-1])
         changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-        same[dofs[:, 1:]] = rate[dofs[:, :1]] + np.cumsum(changes, axis=1)
+        same[dofs[:, 1:]] = rate[dofs[:, :1]] + changes.cumsum(axis=1)
     return same
 
 
@@ -67,13 +67,13 @@ def step_between(model: Model, start: State, end: State) -> Array:
         ratio = (along + 1j * across) / (dx + 1j * dy)
         turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
         changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-        step[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+        step[dofs[:, 1:]] = step[dofs[:, :1]] + changes.cumsum(axis=1)
     return step
 
 
 def _chords(dofs: Ints, z: State, step: Array) -> tuple[Array, Array, Array, Array]:
     """Chord components (n,) along x and y of a beam's nodes ``dofs`` (2, n + 1), and their turn and stretch."""
     dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])
-    step_x, step_y = np.diff(step[dofs], axis=1)
+    step_x, step_y = step[dofs[:, 1:]] - step[dofs[:, :-1]]
     square = dx * dx + dy * dy
     return dx, dy, (dx * step_y - dy * step_x) / square, (dx * step_x + dy * step_y) / square

@@ -390,7 +390,7 @@ def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z:
     n = np.array([-tau[1], tau[0]])
     d = (n * as_plane(line_difference(line, there, line_m, across))).sum(axis=0)
     a = (n * as_plane(across.bent)).sum(axis=0)
-    Z = np.where(faced.fixed, 1.0, J**2 - d * a)
+    Z, fixed = J * J - d * a, faced.fixed
     side = pair.sides(zeta, zeta_m, d)
     g = side * d - distance
     if pair.tapers is not None:
@@ -407,10 +407,11 @@ def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z:
         p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
         # p and k by the unknowns of both lines; k has those of the second alone
         k = projected_gradient(n, shape_slopes(xi_m), line_m, e_m)
-        a_Z, J_Z, d_Z = np.array([a, J, d]) / Z
-        if faced.fixed.any():
-            a_Z = np.where(faced.fixed, -1.0 / np.where(d == 0.0, 1.0, d), a_Z)
-            J_Z, d_Z = np.where(faced.fixed, 0.0, [J_Z, d_Z])
+        if fixed is None:
+            a_Z, J_Z, d_Z = np.array([a, J, d]) / Z
+        else:
+            of_fixed = np.array([-1.0 / np.where(d == 0.0, 1.0, d), 0.0 * d, 0.0 * d])
+            a_Z, J_Z, d_Z = np.where(fixed, of_fixed, np.array([a, J, d]) / np.where(fixed, 1.0, Z))
         d_qq = (-a_Z * p)[:, None] * p
         pk = (-J_Z * p)[:, None] * k
         d_qq[:, _LINE:] += pk

@@ -251,4 +251,4 @@ def layer(elements: Elements, e: int) -> float:
 
 def _wrapped(angle: Array) -> Array:
     """The angle in [−π, π], without round-off if already there."""
-    return np.asarray(angle - 2 * np.pi * np.round(angle / (2 * np.pi)))
+    return np.asarray(angle - 2 * np.pi * np.rint(angle / (2 * np.pi)))

@@ -40,6 +40,7 @@ moment at the pin.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -140,7 +141,7 @@ def passes_through(model: Model, face: Face, before: State, after: State) -> boo
     A point of the beam that crosses from the free side must overlap the edge afterwards.
     """
     chain = face.outline.chain
-    views = [_View(model, face, z) for z in (before, after)]
+    views, zones = [_View(model, face, z) for z in (before, after)], [zones_of(model, face, z) for z in (before, after)]
     even = np.arange(_PARTS * views[0].line.n + 1) / _PARTS
     old, new = (view.place(even) for view in views)
     near = face.outline.near(new)
@@ -153,31 +154,31 @@ def passes_through(model: Model, face: Face, before: State, after: State) -> boo
         path = new - old
         from_a, from_b = (path[0] * (at[1] - old[1]) - path[1] * (at[0] - old[0]) for at in (a, b))
         through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0) & apart & ~inside
-        if through.any() and not _slid_along(views[0], views[1], even[through], path[:, through]).all():
+        if through.any() and not _slid_along(views, zones, even[through], path[:, through]).all():
             return True
-    return _swept_over_tip(face, *views)
+    return _swept_over_tip(face, views, zones)
 
 
-def _slid_along(before: _View, after: _View, zeta: Array, way: Array) -> Flags:
-    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip.
+def _slid_along(views: Sequence[_View], zones: Sequence[Zones], zeta: Array, way: Array) -> Flags:
+    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip, between two states.
 
     ``way`` (2, k) are the paths of the places in the body frame. A tip that presses before and after has penetrated
     the beam: neighbouring places enter on one side and leave on the other.
     """
-    tips = [view.tips() for view in (before, after)]
-    there = [swept.closest_places(view.line, at) for view, (at, _) in zip((before, after), tips, strict=True)]
-    pressed = there[0].found & before.pressed_at(there[0], tips[0][1])
-    pressed &= there[1].found & after.pressed_at(there[1], tips[1][1])
+    tips = [view.tips() for view in views]
+    there = [swept.closest_places(view.line, at) for view, (at, _) in zip(views, tips, strict=True)]
+    pressed = there[0].found & views[0].pressed_at(there[0], tips[0][1], zones[0])
+    pressed &= there[1].found & views[1].pressed_at(there[1], tips[1][1], zones[1])
     low, high = (choose(there[0].zeta, there[1].zeta) for choose in (np.minimum, np.maximum))
     near = (zeta[:, None] > low - 1.0) & (zeta[:, None] < high + 1.0) & pressed
-    ahead = after.back.conjugate() * (way[0] + 1j * way[1])
+    ahead = views[1].back.conjugate() * (way[0] + 1j * way[1])
     across = np.abs((there[1].n.conj() * ahead[:, None]).real)
     return np.asarray((near & (across < _ALONG * np.abs(ahead)[:, None])).any(axis=1))
 
 
-def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
+def _swept_over_tip(face: Face, views: Sequence[_View], zones: Sequence[Zones]) -> bool:
     """True if the beam passed over a tip between two samples and does not press on the tip any more."""
-    tips = [view.tips() for view in (before, after)]
+    (before, after), tips = views, [view.tips() for view in views]
     if tips[0][0].size == 0:
         return False
     first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
@@ -186,8 +187,8 @@ def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
     over &= last.distance_along(tips[1][1]) < 0.0
     if not over.any():
         return False
-    over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1])
-    return bool((over & ~after.pressed_at(last, tips[1][1])).any())
+    over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1], zones[0])
+    return bool((over & ~after.pressed_at(last, tips[1][1], zones[1])).any())
 
 
 def tip_depth(model: Model, face: Face, z: State) -> float:
@@ -203,7 +204,7 @@ def tip_depth(model: Model, face: Face, z: State) -> float:
         deep &= np.abs(there.zeta - end) > 1.0
     if not deep.any():
         return 0.0
-    return float(depth[deep & view.pressed_at(there, out)].max(initial=0.0))
+    return float(depth[deep & view.pressed_at(there, out, zones_of(model, face, z))].max(initial=0.0))
 
 
 def edge_distances(model: Model, face: Face, z: State, zeta: Array) -> Near:
@@ -370,14 +371,16 @@ class _View:
         points, out = (vectors[0] + 1j * vectors[1] for vectors in self.face.outline.tips)
         return complex(*self.centre) + self.back.conjugate() * points, self.back.conjugate() * out
 
-    def pressed_at(self, there: ClosestPlaces, out: Complex) -> Flags:
-        """True if the contact pushes the beam away from tips (t,), of current direction ``out``, within an element."""
-        zones, _ = self.zones()
+    def pressed_at(self, there: ClosestPlaces, out: Complex, zones: Zones) -> Flags:
+        """True if the contact pushes the beam away from tips (t,), of current direction ``out``, within an element.
+
+        ``zones`` are the zones of overlap.
+        """
         pressed = np.zeros(out.size, dtype=bool)
         if not len(zones.intervals):
             return pressed
         places, weights = gauss(_LOOKED)
-        width = np.diff(zones.intervals, axis=1)
+        width = zones.intervals[:, 1:] - zones.intervals[:, :1]
         zeta = (zones.intervals.mean(axis=1)[:, None] + 0.5 * width * places).ravel()
         near = self.face.outline.near(self.place(zeta))
         overlap = np.maximum(self.face.edge.at(zeta) - near.distance, 0.0) * (width * weights).ravel()
@@ -432,9 +435,12 @@ class _View:
         # of a product with the rotated conjugate normal, the real part is n·v and the imaginary part −τ·v
         back = (near.normal[0] - 1j * near.normal[1]) * self.back
         ahead = back * there.ahead
+        g, slope = near.distance - face.edge.nearest, ahead.real
+        if face.edge.varies:
+            g, slope = near.distance - face.edge.at(zeta), slope - face.edge.slope(zeta)
         return Gap(
-            near.distance - face.edge.at(zeta),
-            ahead.real - face.edge.slope(zeta),
+            g,
+            slope,
             (back * there.bent).real + near.bend * ahead.imag**2,
             none_m,
             near.distance > -face.outline.extent,
@@ -455,7 +461,7 @@ class _View:
         P = corners.points[:, near]
         across = (corners.bisectors, *corners.tangents)
         t = np.concatenate([tangents[:, near] for tangents in across], axis=1)
-        every, crosses = self._crossing(np.tile(P, len(across)), t, np.tile(start, len(across)))
+        every, crosses = self._crossing(np.concatenate([P] * 3, axis=1), t, np.concatenate([start] * 3))
         zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance
         jumps = through & np.where(corners.convex[near], d < 0.0, d > 0.0)
@@ -472,7 +478,7 @@ class _View:
             step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
             moved = np.minimum(np.maximum(zeta - step, 0.0), self.line.n)
             zeta, step = moved, zeta - moved
-            if float(np.abs(step).max()) < _ARRIVED:
+            if np.maximum.reduce(np.abs(step)) < _ARRIVED:
                 break
         crosses = np.abs(((self._place(self.line.around(zeta)) - at) * along_t).real) < _ARRIVED
         for end in self.face.own:

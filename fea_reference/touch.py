@@ -72,9 +72,9 @@ class Pair:
     roles: Roles | None = None
     tapers: Tapers | None = None
 
-    def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
-        """Sides (k,) at places ``zeta`` (k,) and ``zeta_m`` (k,), with ``d`` (k,) = n·(x − x_m)."""
-        return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
+    def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array | float:
+        """Sides (k,), or of all places, at ``zeta`` (k,) and ``zeta_m`` (k,), with ``d`` (k,) = n·(x − x_m)."""
+        return self.side if self.roles is None else self.roles.sides(zeta, zeta_m, d)
 
     def places_facing(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
         """Places of the second beam facing ``zeta`` (k,) of the first, with initial guesses ``guess`` (k,)."""

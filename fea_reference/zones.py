@@ -47,6 +47,7 @@ _BENT = 0.5
 _SHORT = 1e-4  # elements: steps with a negligible third power
 _TURNS = 1e-4  # elements: last step of a search for a minimum, where the gap changes with the square of the error
 _WITHIN = 1e-9  # share of an interval: far narrower zones begin at a minimum of the gap
+_EPS = float(np.finfo(float).eps)
 _EVEN = 3.0  # times the mean slope: a cubic with smaller end slopes is monotonic
 
 
@@ -104,26 +105,27 @@ class Survey:
             gap_there = self.at(where, guess)
             return gap_there.g - level, gap_there.slope, gap_there.curvature, gap_there.zeta_m
 
-        ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
+        ends = (neighbours & (g[:-1] * g[1:] < 0.0)).nonzero()[0]
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
             where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
             new = np.array([where, np.zeros_like(where), guess])
             zeta, g, zeta_m = _with_columns(np.array([zeta, g, zeta_m]), ends, new)
             neighbours = _with_neighbours(neighbours, ends)
-        inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
+        here, there_next = g[:-1], g[1:]
+        negative_parts = neighbours & (np.maximum(here, there_next) <= 0.0) & (here + there_next < 0.0)
+        inside = negative_parts.nonzero()[0]
+        if not inside.size:
+            return no_zones(self.least)
         # The gap is smooth within an element, so that adjacent parts form a single interval.
-        parted = zeta[inside] == np.floor(zeta[inside])
+        place = zeta[inside]
+        parted = place == np.floor(place)
         if self.kinks:
-            parted |= np.isin(zeta[inside], self.kinks)
-        begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | parted)
-        last = np.append(begins[1:], inside.size)[: begins.size] - 1
-        low, high = inside[begins], inside[last] + 1
-        intervals, closest_there = (
-            np.stack([zeta[low], zeta[high]], axis=1),
-            np.stack([zeta_m[low], zeta_m[high]], axis=1),
-        )
-        return Zones(intervals, closest_there, self.least)
+            parted |= np.isin(place, self.kinks)
+        parted[1:] |= inside[1:] - inside[:-1] > 1
+        begins = parted[1:].nonzero()[0] + 1
+        bounds = np.concatenate([inside[:1], inside[begins], inside[begins - 1] + 1, inside[-1:] + 1]).reshape(2, -1).T
+        return Zones(zeta[bounds], zeta_m[bounds], self.least)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +158,7 @@ class Zones:
 def gap(
     first: NeutralLine,
     second: NeutralLine,
-    sides: Callable[[Array, Array, Array], Array],
+    sides: Callable[[Array, Array, Array], Array | float],
     T: float,
     tapers: Tapers | None,
     zeta: Array,
@@ -178,9 +180,11 @@ def gap(
     d = (back * line_difference(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
-    bend = -a / np.where(faced.fixed, 1.0, J**2 - d * a)
-    if faced.fixed.any():
-        bend = np.where(faced.fixed, 1.0 / np.where(d == 0.0, 1.0, d), bend)
+    Z = J * J - d * a
+    if (fixed := faced.fixed) is None:
+        bend = -a / Z
+    else:
+        bend = np.where(fixed, 1.0 / np.where(d == 0.0, 1.0, d), -a / np.where(fixed, 1.0, Z))
     curvature = (back * there.bent).real + bend * ahead.imag**2
     side = sides(zeta, zeta_m, d)
     g, slope = side * d - T, side * ahead.real
@@ -189,9 +193,9 @@ def gap(
     return Gap(g, slope, side * curvature, zeta_m, faced.found)
 
 
-def one_side(side: float) -> Callable[[Array, Array, Array], Array]:
+def one_side(side: float) -> Callable[[Array, Array, Array], float]:
     """Side function with a constant value."""
-    return lambda zeta, _zeta_m, _d: np.full(zeta.shape, side)
+    return lambda _zeta, _zeta_m, _d: side
 
 
 def side_of(first: NeutralLine, second: NeutralLine, unseen: float = 1.0) -> float:
@@ -288,7 +292,7 @@ def overlap(
 
 def gap_round_off(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Round-off of the gap of two beams."""
-    return float(np.finfo(float).eps * (abs(T) + first.longest + second.longest))
+    return _EPS * (abs(T) + first.longest + second.longest)
 
 
 def negative(
@@ -333,7 +337,7 @@ def survey(
 
     # a maximum matters only between two places with negative gaps
     parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
-    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0) & parts)
+    turning = (neighbours & (slope[:-1] * slope[1:] < 0.0) & parts).nonzero()[0]
     if turning.size and kinks:
         turning = turning[~_at_kinks(slope_at, zeta, slope, zeta_m, turning, kinks)]
     if turning.size:
@@ -380,13 +384,13 @@ def _with_bends(
     The slope has the same sign at both, but the cubic through g and g' of both has two turning points; the new place
     is the second. A zone missed there would appear at its full width, and its force with a jump.
     """
-    width, slope = np.where(neighbours, np.diff(zeta), 1.0), there.slope
-    before, behind, rise = slope[:-1], slope[1:], np.diff(there.g) / width
+    width, slope = np.where(neighbours, zeta[1:] - zeta[:-1], 1.0), there.slope
+    before, behind, rise = slope[:-1], slope[1:], (there.g[1:] - there.g[:-1]) / width
     # g' = before + 2 b ξ + 3 a ξ², over the width
     b, a = 3.0 * rise - 2.0 * before - behind, before + behind - 2.0 * rise
     turned = -b / np.where(a == 0.0, 1.0, 3.0 * a)
     inside = (a != 0.0) & (turned > _INSIDE) & (turned < 1.0 - _INSIDE)
-    bends = np.flatnonzero(neighbours & (before * behind > 0.0) & (before * b < 0.0) & inside)
+    bends = (neighbours & (before * behind > 0.0) & (before * b < 0.0) & inside).nonzero()[0]
     if bends.size == 0:
         return zeta, there, neighbours
     share = turned[bends]
@@ -432,7 +436,7 @@ def _samples(
         off = ((first.nodes[there.element] - facing_to + there.way) * back).real
         step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
         moved = np.minimum(np.maximum(zeta - step, 0.0), first.n)
-        done = np.abs(moved - zeta).max() < 1e-8
+        done = np.maximum.reduce(np.abs(moved - zeta)) < 1e-8
         zeta = moved
         if done:
             break
@@ -446,10 +450,11 @@ def steps_within(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple
         Places (m,), and (m−1,) True if a place and the next belong to the same run of elements.
     """
     zeta = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT).ravel()
-    ends = elements[np.append(np.diff(elements) > 1, True)] + 1.0
+    gaps = (elements[1:] - elements[:-1] > 1).nonzero()[0]
     inner = [knot for knot in knots if knot != int(knot) and int(knot) in elements]
-    if ends.size == 1 and not inner:
-        return np.append(zeta, ends), np.ones(zeta.size, dtype=bool)
+    if not gaps.size and not inner:
+        return np.concatenate([zeta, elements[-1:] + 1.0]), np.ones(zeta.size, dtype=bool)
+    ends = np.concatenate([elements[gaps], elements[-1:]]) + 1.0
     zeta = np.union1d(zeta, np.concatenate([ends, inner]))
     return zeta, ~np.isin(zeta[:-1], ends) | np.isin(zeta[:-1], elements)
 
@@ -488,7 +493,8 @@ def _roots(
     for _ in range(_ITERATIONS):
         f, df, bend, guess = function(x, guess)
         below = f * rising < 0.0
-        low, high = np.where(below, x, low), np.where(below, high, x)
+        np.copyto(low, x, where=below)
+        np.copyto(high, x, where=~below)
         flat = df == 0.0
         newton_step = -f / np.where(flat, 1.0, df)
         newton = x + newton_step
@@ -498,8 +504,8 @@ def _roots(
         # a step out of the bracket by round-off has converged; bisection would restart from afar
         good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
         moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
-        converged = np.abs(f) * (high - low) <= floor
-        step = np.where(converged, 0.0, moved - x)
+        step = moved - x
+        step[np.abs(f) * (high - low) <= floor] = 0.0
         x, guess = x + step, guess + pace * step
         size = np.abs(step)
         if bend is not None:
@@ -569,7 +575,7 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     a, b, c = 0.5 * curvature[inner] * width**2, direction * slope[inner] * width, g[inner]
     root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
     # stable form of (−b + root)/(2a)
-    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN, 1.0 - _WITHIN)
+    distance = np.minimum(np.maximum(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN), 1.0 - _WITHIN)
     return np.where(forward, distance, 1.0 - distance)
 
 
