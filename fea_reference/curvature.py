@@ -125,7 +125,7 @@ class _Feasible:
         """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
         right = np.bincount(self.columns, self.entries * forces[self.rows], factor.shape[1])
         directions = dpbtrs(factor, right, lower=1)[0]
-        return np.bincount(self.rows, self.entries * directions[self.columns], forces.size)
+        return np.asarray(np.bincount(self.rows, self.entries * directions[self.columns], forces.size), dtype=float)
 
 
 def _factor(band: Array) -> Array | None:
@@ -142,11 +142,13 @@ def _feasible(model: Model, system: System) -> _Feasible:
     rows, columns, entries = _directions(model, system, K)
     axial = model.element_dofs[6]
     layout = _layout(*(of.tobytes() for of in (K.indices, K.indptr.astype(np.int64), rows, columns, axial)))
-    compliance = np.maximum(-K.data[layout.diagonal], model.elements.length / _STIFF)
+    compliance = np.maximum(-K.diagonal()[axial], model.elements.length / _STIFF)
     stretching = K.data[layout.first] * K.data[layout.second] / compliance[layout.element]
     pairs = entries[layout.left] * entries[layout.right]
-    stiffness = layout.band(np.concatenate([K.data[layout.own], stretching]) * pairs)
-    inertia = layout.band_of_mass(mass[rows[layout.mass_left]] * entries[layout.mass_left] * entries[layout.mass_right])
+    stiffness = layout.band(layout.at, np.concatenate([K.data[layout.own], stretching]) * pairs)
+    inertia = layout.band(
+        layout.mass_at, mass[rows[layout.mass_left]] * entries[layout.mass_left] * entries[layout.mass_right]
+    )
     return _Feasible(rows, layout.place[columns], entries, mass, stiffness, inertia)
 
 
@@ -160,7 +162,6 @@ class _Layout:
         first, second, element: entries of K in the terms T^T B^T (c l)⁻¹ B T, and their element.
         left, right: entries of T in all these terms; at: position of the terms in the band.
         mass_left, mass_right, mass_at: the same for T^T M T.
-        diagonal: entries of K of every element's axial force by itself.
         shape: of the band.
     """
 
@@ -175,16 +176,11 @@ class _Layout:
     mass_left: Index
     mass_right: Index
     mass_at: Index
-    diagonal: Index
     shape: tuple[int, int]
 
-    def band(self, terms: Array) -> Array:
-        """The sum of the terms of A in band storage."""
-        return np.bincount(self.at, terms, self.shape[0] * self.shape[1]).reshape(self.shape)
-
-    def band_of_mass(self, terms: Array) -> Array:
-        """The sum of the terms of T^T M T in band storage."""
-        return np.bincount(self.mass_at, terms, self.shape[0] * self.shape[1]).reshape(self.shape)
+    def band(self, at: Index, terms: Array) -> Array:
+        """The sum of terms at positions ``at`` of the band."""
+        return np.asarray(np.bincount(at, terms, self.shape[0] * self.shape[1]), dtype=float).reshape(self.shape)
 
 
 @lru_cache(maxsize=32)
@@ -211,8 +207,6 @@ def _layout(indices: bytes, indptr: bytes, rows: bytes, columns: bytes, axial: b
     of_element, first, second = _all_pairs(start, many, start, many)
     first, second = stretching[first], stretching[second]
     pair, left, right = of_motions(K_columns[first], K_columns[second])
-    diagonal = np.flatnonzero((element[K_rows] >= 0) & (K_rows == K_columns))
-    diagonal = diagonal[np.argsort(element[K_rows[diagonal]])]
 
     left, right = np.concatenate([own_left, left]), np.concatenate([own_right, right])
     size = int(T_columns.max(initial=-1)) + 1
@@ -245,7 +239,6 @@ def _layout(indices: bytes, indptr: bytes, rows: bytes, columns: bytes, axial: b
         mass_left,
         mass_right,
         mass_below * size + place[T_columns[mass_right]],
-        diagonal,
         (int(below.max(initial=0)) + 1, size),
     )
 

@@ -50,7 +50,7 @@ class Span:
 
 def tangent_angles(span: Span, shear: Array, z: State) -> Array:
     """ψ (n+1,) of a beam with shear angles ``shear`` (n,)."""
-    theta = z.values[np.append(span.dofs[2], span.dofs[5, -1])]
+    theta: Array = z.values[np.append(span.dofs[2], span.dofs[5, -1])]
     if not span.slips:
         return theta
     start, end = (0.0 if welded else 1.0 for welded in span.welded)

@@ -29,8 +29,8 @@ def closest(line: NeutralLine, points: Complex, zeta: Array) -> tuple[Array, NDA
     """Closest places to points x + i y (k,), True (k,) where found, and the line at these places."""
     if 0 < zeta.size <= _FEW:
         found_places = [_closest_to(line, *start) for start in zip(points.tolist(), zeta.tolist(), strict=True)]
-        places, found, *there = map(np.array, zip(*found_places, strict=True))
-        return places, found, Around(*there)
+        places, found_here, *line_there = map(np.array, zip(*found_places, strict=True))
+        return places, found_here, Around(*line_there)
     n, done = float(line.n), False
     for iteration in range(_ITERATIONS):
         there = line.around(zeta)

@@ -148,7 +148,7 @@ def rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array,
             _load(sums, load, frames[load.body], value)
     residual = np.bincount(np.array(sums.at, dtype=np.int64), np.array(sums.forces), model.size)
     rows, columns = (np.array(of, dtype=np.int64) for of in (sums.rows, sums.columns))
-    return residual, Single(rows, columns, np.array(sums.entries))
+    return np.asarray(residual, dtype=float), Single(rows, columns, np.array(sums.entries))
 
 
 def _join(sums: _Sums, joint: JointPart, frame: _Frame, z: State, way: Sequence[float]) -> None:
