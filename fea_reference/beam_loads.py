@@ -113,7 +113,7 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
     force = value * part.forces
     placed = _load_places(model, part, z)
     place = placed.place
-    start = model.loaded.recall(model.start, part.name, lambda: _load_places(model, part, model.start).place)
+    start = model.known.recall(model.start, ("load", part.name), lambda: _load_places(model, part, model.start).place)
     local, twice = placed.projected_gradient(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
@@ -135,7 +135,7 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     theta = theta - bow * chords.shear[at]
     local[:6] -= bow * chords.shear_by[:, at]
     twice[:6, :6] -= bow * chords.shear_by_twice[:, :, at]
-    rest, give = model.loaded.recall(model.start, part.name, lambda: _moment_at_rest(model, part))
+    rest, give = model.known.recall(model.start, ("load", part.name), lambda: _moment_at_rest(model, part))
     chain = model.chain_of_sections(beam, e, z)
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
@@ -307,14 +307,10 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
     beam = model.beams[part.beam]
     if isinstance(part, BeamMomentPart):
         unit_load = _beam_moment(model, part, 1.0, z)
-        f = np.zeros(model.size)
-        np.add.at(f, unit_load.dofs, unit_load.gradient)
-        return f
+        return model.spread(unit_load.dofs, unit_load.gradient)
     placed = _load_places(model, part, z)
     chain = model.separate_chain(beam, placed.e, z)
-    f = np.zeros(model.size)
-    np.add.at(f, chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
-    return f
+    return model.spread(chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
 
 
 def force_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:

@@ -32,18 +32,18 @@ zone, is of second order.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import CircleContact, Scene
 from fea_reference.edge import edge_of
-from fea_reference.hermite import Around, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
-from fea_reference.model import Model, turned
+from fea_reference.hermite import Around, NeutralLine, as_plane
+from fea_reference.model import Model
+from fea_reference.rigid_touch import rigid_touch
 from fea_reference.state import Complex, State, squared, summed
 from fea_reference.swept import swept_over
-from fea_reference.touch import Circle, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.touch import Circle, Penalty, Touch, gauss_places
 from fea_reference.zones import Gap, Zones, negative, steps_within
 
 _BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
@@ -92,8 +92,8 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Zones of overlap of the beam with the circle in state ``z``."""
-    return model.leads.recall(
-        z, (circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
+    return model.known.recall(
+        z, ("lead", circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
     )[0]
 
 
@@ -137,56 +137,15 @@ def passes_through(model: Model, circle: Circle, before: State, after: State) ->
 
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
-    beam, body = model.beams[circle.first], model.bodies[circle.body]
-    relative, c = _relative_line(model, circle, z), centre(model, circle, z)
-    line = relative.line
-    ahead, _ = model.leads.recall(z, (circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {}))
+    relative = _relative_line(model, circle, z)
+    ahead, _ = model.known.recall(
+        z, ("lead", circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {})
+    )
     zones = replace(ahead, least=ahead.least + penalty.lead)
-
-    points, weights = gauss(quadrature)
-    width = zones.intervals[:, 1] - zones.intervals[:, 0]
-    zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
-    there = line.around(zeta)
-    e = there.element
-    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
-
-    r, toward, g = _clearance(relative, circle, there, zeta)
-    x, n = as_plane(line.nodes[e] + there.way), as_plane(toward)
-    tau = np.array([n[1], -n[0]])
-
-    H, moves = shapes(zeta - e), body.dofs is not None
-    arm = turned(np.array(circle.arm), model.body_state(body, z)[2])
-    across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
-
-    def by(v: Array) -> Array:
-        own = projected_gradient(v, H, line, e)
-        return np.concatenate([own, -v, -across[None] @ v]) if moves else own
-
-    def by_twice() -> Array:
-        p = by(tau)
-        g_qq = (p / r)[:, None] * p
-        g_qq[:7, :7] += projected_hessian(n, H, line, e)
-        if moves:
-            g_qq[9, 9] += arm @ n
-        return np.asarray(g_qq)
-
-    g = g - penalty.lead
-    weight = penalty.stiffness * ds
-    points_per_place = count_points_per_place(quadrature, e)
-    return Touch(
-        pair=circle,
-        zones=zones,
-        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
-        points_per_place=points_per_place,
-        stiffness=weight,
-        gap=g,
-        gap_by=cache(lambda: by(n)),
-        gap_by_twice=cache(by_twice),
-        zeta=zeta,
-        zeta_m=np.empty(0),
-        x=x,
-        x_m=c[:, None] + circle.radius * n,
-        normal=n,
+    places = gauss_places(zones, relative.line, quadrature)
+    r, n, g = _clearance(relative, circle, places[1], places[0])
+    return rigid_touch(
+        model, circle, penalty, quadrature, z, zones, places, (g, as_plane(n), 1.0 / r, r - circle.radius)
     )
 
 

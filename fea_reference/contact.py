@@ -69,7 +69,7 @@ from fea_reference.model import BeamPart, Model
 from fea_reference.neighbours import nearest
 from fea_reference.state import State
 from fea_reference.staying import frame_of
-from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, gauss, gauss_places
 from fea_reference.zones import (
     Survey,
     Zones,
@@ -263,7 +263,7 @@ def _survey(model: Model, pair: Pair, z: State, T: float) -> Survey:
             return survey_pair(first, second, pair.side, T, pair.tapers, pair.free)
         return survey_self(first, pair.roles, T, pair.tapers)
 
-    return model.surveys.recall(z, (pair, T), look)
+    return model.known.recall(z, ("survey", pair, T), look)
 
 
 def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
@@ -371,17 +371,12 @@ class _GaussPoints:
 def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _GaussPoints:
     """The gap at the Gauss points of the first beam's ``zones``."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
-    points, weights = gauss(quadrature)
-    share = 0.5 * (points + 1.0)
-    width = zones.intervals[:, 1] - zones.intervals[:, 0]
-    zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
-    guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
     # an interval and its Gauss points lie within a single element
-    e, xi = line.locate(zeta)
-    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
-
-    there = line.around(zeta)
-    x = line.nodes[there.element] + there.way
+    zeta, there, ds = gauss_places(zones, line, quadrature)
+    share = 0.5 * (gauss(quadrature)[0] + 1.0)
+    guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
+    e, x = there.element, line.nodes[there.element] + there.way
+    xi = zeta - e
     faced = pair.places_facing(line, line_m, zeta, guess)
     zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)

@@ -138,118 +138,74 @@ def _factor(band: Array) -> Array | None:
 
 def _feasible(model: Model, system: System) -> _Feasible:
     """T, A and the lumped mass on the feasible directions."""
-    K, mass = system.tangent, lumped_mass(model)
+    K, mass = system.tangent.matrix, lumped_mass(model)
     rows, columns, entries = _directions(model, system, K)
     axial = model.element_dofs[6]
-    layout = _layout(*(of.tobytes() for of in (K.indices, K.indptr.astype(np.int64), rows, columns, axial)))
+    place, bands = _layout(*(of.tobytes() for of in (K.indices, K.indptr.astype(np.int64), rows, columns, axial)))
     compliance = np.maximum(-K.diagonal()[axial], model.elements.length / _STIFF)
-    stretching = K.data[layout.first] * K.data[layout.second] / compliance[layout.element]
-    pairs = entries[layout.left] * entries[layout.right]
-    stiffness = layout.band(layout.at, np.concatenate([K.data[layout.own], stretching]) * pairs)
-    inertia = layout.band(
-        layout.mass_at, mass[rows[layout.mass_left]] * entries[layout.mass_left] * entries[layout.mass_right]
-    )
-    return _Feasible(rows, layout.place[columns], entries, mass, stiffness, inertia)
-
-
-@dataclass(frozen=True, slots=True)
-class _Layout:
-    """Positions of all terms of A and T^T M T, for matrices K and T of a given pattern.
-
-    Attributes:
-        place: position (q,) of every direction in the order with a small bandwidth.
-        own: entries of K in the terms T^T H T.
-        first, second, element: entries of K in the terms T^T B^T (c l)⁻¹ B T, and their element.
-        left, right: entries of T in all these terms; at: position of the terms in the band.
-        mass_left, mass_right, mass_at: the same for T^T M T.
-        shape: of the band.
-    """
-
-    place: Index
-    own: Index
-    first: Index
-    second: Index
-    element: Index
-    left: Index
-    right: Index
-    at: Index
-    mass_left: Index
-    mass_right: Index
-    mass_at: Index
-    shape: tuple[int, int]
-
-    def band(self, at: Index, terms: Array) -> Array:
-        """The sum of terms at positions ``at`` of the band."""
-        return np.asarray(np.bincount(at, terms, self.shape[0] * self.shape[1]), dtype=float).reshape(self.shape)
+    return _Feasible(rows, place[columns], entries, mass, *bands(K.data, compliance, entries, mass[rows]))
 
 
 @lru_cache(maxsize=32)
-def _layout(indices: bytes, indptr: bytes, rows: bytes, columns: bytes, axial: bytes) -> _Layout:
-    """Layout for the patterns of K and T (sorted by rows), and the unknowns of the axial forces."""
+def _layout(
+    indices: bytes, indptr: bytes, rows: bytes, columns: bytes, axial: bytes
+) -> tuple[Index, Callable[[Array, Array, Array, Array], tuple[Array, Array]]]:
+    """Places (q,) of the directions, and the bands of A and T^T M T, for matrices K and T of given patterns.
+
+    The patterns are indices and pointers of K, rows and columns of T, sorted by rows, and the unknowns of the axial
+    forces. The bands follow from the entries of K, the compliances c l, the entries of T and the mass of their rows.
+    """
     K_columns, pointer, T_rows, T_columns, forces = (
         np.frombuffer(of, dtype=kind)
         for of, kind in ((indices, np.int32), *((of, np.int64) for of in (indptr, rows, columns, axial)))
     )
-    K_rows = np.repeat(np.arange(pointer.size - 1), np.diff(pointer))
-    begin = np.searchsorted(T_rows, np.arange(pointer.size))
+    unknowns, size = np.arange(pointer.size - 1), int(T_columns.max(initial=-1)) + 1
+    K_rows, begin = np.repeat(unknowns, np.diff(pointer)), np.searchsorted(T_rows, np.arange(pointer.size))
     count = np.diff(begin)
 
-    def of_motions(here: Index, there: Index) -> tuple[Index, Index, Index]:
-        """Numbers of the pairs of unknowns with pairs of entries of T, and these entries."""
+    def of_motions(here: Index, there: Index) -> tuple[Index, Index]:
+        """Numbers of the pairs of unknowns with pairs of entries of T, and these entries (2, k)."""
         return _all_pairs(begin[here], count[here], begin[there], count[there])
 
-    own, own_left, own_right = of_motions(K_rows, K_columns)
-    element = np.full(pointer.size - 1, -1)
+    own, own_pairs = of_motions(K_rows, K_columns)
+    element = np.full(unknowns.size, -1)
     element[forces] = np.arange(forces.size)
     stretching = np.flatnonzero((element[K_rows] >= 0) & (count[K_columns] > 0))
-    start = np.searchsorted(K_rows[stretching], forces)
-    many = np.searchsorted(K_rows[stretching], forces, side="right") - start
-    of_element, first, second = _all_pairs(start, many, start, many)
-    first, second = stretching[first], stretching[second]
-    pair, left, right = of_motions(K_columns[first], K_columns[second])
+    start, stop = (np.searchsorted(K_rows[stretching], forces, side) for side in ("left", "right"))
+    of_element, (first, second) = _all_pairs(start, stop - start, start, stop - start)
+    pair, pairs = of_motions(K_columns[stretching[first]], K_columns[stretching[second]])
+    first, second, of_element = stretching[first[pair]], stretching[second[pair]], of_element[pair]
+    pairs, mass_pairs = np.concatenate([own_pairs, pairs], axis=1), of_motions(unknowns, unknowns)[1]
 
-    left, right = np.concatenate([own_left, left]), np.concatenate([own_right, right])
-    size = int(T_columns.max(initial=-1)) + 1
-    pattern = csr_array((np.ones(left.size), (T_columns[left], T_columns[right])), (size, size))
-    order = reverse_cuthill_mckee(pattern, symmetric_mode=True)
+    pattern = csr_array((np.ones(pairs.shape[1]), tuple(T_columns[pairs])), (size, size))
     place = np.empty(size, dtype=np.int64)
-    place[order] = np.arange(size)
+    place[reverse_cuthill_mckee(pattern, symmetric_mode=True)] = np.arange(size)
+    width = int(np.abs(np.diff(place[T_columns[pairs]], axis=0)).max(initial=0)) + 1
 
-    def lower(left: Index, right: Index) -> tuple[Index, Index]:
-        """Terms in the lower half, and their distances from the diagonal."""
-        below = place[T_columns[left]] - place[T_columns[right]]
-        kept = np.flatnonzero(below >= 0)
-        return kept, below[kept]
-
-    _, mass_left, mass_right = of_motions(np.arange(pointer.size - 1), np.arange(pointer.size - 1))
-    (kept, below), (mass_kept, mass_below) = lower(left, right), lower(mass_left, mass_right)
-    mass_left, mass_right = mass_left[mass_kept], mass_right[mass_kept]
-    in_own = kept[kept < own.size]
-    in_stretching = kept[in_own.size :] - own.size
-    left, right, pair = left[kept], right[kept], pair[in_stretching]
-    return _Layout(
-        place,
-        own[in_own],
-        first[pair],
-        second[pair],
-        of_element[pair],
-        left,
-        right,
-        below * size + place[T_columns[right]],
-        mass_left,
-        mass_right,
-        mass_below * size + place[T_columns[mass_right]],
-        (int(below.max(initial=0)) + 1, size),
+    # in the band, or behind the band for terms above the diagonal
+    at, mass_at = (
+        np.where(row >= column, (row - column) * size + column, width * size)
+        for row, column in (place[T_columns[on]] for on in (pairs, mass_pairs))
     )
 
+    def band(at: Index, terms: Array) -> Array:
+        return np.asarray(np.bincount(at, terms, width * size + 1), dtype=float)[:-1].reshape(width, size)
 
-def _all_pairs(start: Index, count: Index, other_start: Index, other_count: Index) -> tuple[Index, Index, Index]:
-    """Numbers of two ranges, and all pairs of a number of the first with a number of the second."""
-    number = np.repeat(np.arange(count.size), count * other_count)
-    ends = np.cumsum(count * other_count)
-    within = np.arange(number.size) - (ends - count * other_count)[number]
-    of_first, of_second = np.divmod(within, np.maximum(other_count[number], 1))
-    return number, start[number] + of_first, other_start[number] + of_second
+    def bands(K: Array, compliance: Array, T: Array, mass: Array) -> tuple[Array, Array]:
+        values = np.concatenate([K[own], K[first] * K[second] / compliance[of_element]])
+        left, right = mass_pairs
+        return band(at, values * T[pairs[0]] * T[pairs[1]]), band(mass_at, mass[left] * T[left] * T[right])
+
+    return place, bands
+
+
+def _all_pairs(start: Index, count: Index, other_start: Index, other_count: Index) -> tuple[Index, Index]:
+    """Numbers of two ranges (k,), and all pairs (2, k) of a number of the first with a number of the second."""
+    many = count * other_count
+    number = np.repeat(np.arange(count.size), many)
+    within = np.arange(number.size) - (np.cumsum(many) - many)[number]
+    pair = np.array(np.divmod(within, np.maximum(other_count[number], 1)))
+    return number, pair + np.array([start[number], other_start[number]])
 
 
 def _directions(model: Model, system: System, K: csc_matrix) -> tuple[Index, Index, Array]:

@@ -103,10 +103,9 @@ class Chords:
     def shear_by_twice(self) -> Array:
         """Second derivatives (6, 6, n) of γ by the same unknowns."""
         (cos, sin), turned = self.ahead, (self.slip[0] + self.slip[1]) / self.length**2
-        twice = np.zeros((4, 4, self.length.size))
-        twice[0, 0] = 2.0 * turned * cos * sin
-        twice[1, 1] = -twice[0, 0]
-        twice[0, 1] = twice[1, 0] = turned * (sin * sin - cos * cos)
+        along, across = 2.0 * turned * cos * sin, turned * (sin * sin - cos * cos)
+        twice = np.zeros((4, 4, turned.size))
+        twice[:2, :2] = [[along, across], [across, -along]]
         return _by_nodes(twice, 6)
 
 
@@ -226,19 +225,13 @@ def forces(elements: Elements, chord: Chords, N: Array) -> ElementForces:
         K = K + (12.0 * quartic * gamma**2 - mixed * N**2) * slip[:, None] * slip
         of_turn, (nx, ny) = K[0] + K[1], chord.across / l
         whole, lean = of_turn[0] + of_turn[1] + N * l, V / l
-        twice = np.empty((5, 5, l.size))
-        twice[0, 0] = whole * nx * nx - 2.0 * lean * cos * sin
-        twice[1, 1] = whole * ny * ny + 2.0 * lean * cos * sin
-        twice[0, 1] = twice[1, 0] = whole * nx * ny + lean * (cos * cos - sin * sin)
-        twice[0, 2:4] = twice[2:4, 0] = -of_turn * nx
-        twice[1, 2:4] = twice[2:4, 1] = -of_turn * ny
-        twice[2:4, 2:4] = K
-        strained = strain_by_rotation[0] + strain_by_rotation[1]
-        twice[0, 4] = twice[4, 0] = cos - strained * nx
-        twice[1, 4] = twice[4, 1] = sin - strained * ny
-        twice[2:4, 4] = twice[4, 2:4] = strain_by_rotation
-        twice[4, 4] = -stretched - mixed * gamma**2
-        return twice
+        xx, yy = whole * nx * nx - 2.0 * lean * cos * sin, whole * ny * ny + 2.0 * lean * cos * sin
+        xy = whole * nx * ny + lean * (cos * cos - sin * sin)
+        (x1, x2), (y1, y2), (s1, s2) = -of_turn * nx, -of_turn * ny, strain_by_rotation
+        xN, yN = cos - (s1 + s2) * nx, sin - (s1 + s2) * ny
+        by_N = -stretched - mixed * gamma**2
+        rows = [xx, xy, x1, x2, xN], [xy, yy, y1, y2, yN], [x1, y1, *K[0], s1], [x2, y2, *K[1], s2]
+        return np.array([*rows, [xN, yN, s1, s2, by_N]])
 
     return ElementForces(by_motions[_MOTIONS] * _SIGNS[:, None], energy, chord.rotation, motions)
 

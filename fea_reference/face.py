@@ -42,7 +42,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -51,13 +51,14 @@ from cprbm_scene.statement import EdgeContact, Scene
 from fea_reference import swept
 from fea_reference.edge import edge_of
 from fea_reference.element import layer
-from fea_reference.hermite import Around, Index, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
+from fea_reference.hermite import Around, NeutralLine, as_plane, shapes
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import ends_on_edge
+from fea_reference.rigid_touch import by_motions, rigid_touch
 from fea_reference.state import Complex, State, summed
 from fea_reference.swept import ClosestPlaces, swept_over
-from fea_reference.touch import THINNEST, Face, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, gauss_places
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, no_zones
 
 _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of a beam in contact as a line
@@ -132,7 +133,7 @@ def sharpness(outline: Outline) -> float:
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
     """Zones of overlap of the beam with the edge in state ``z``."""
-    return model.leads.recall(z, (face, 0.0), lambda: _View(model, face, z).zones())[0]
+    return model.known.recall(z, ("lead", face, 0.0), lambda: _View(model, face, z).zones())[0]
 
 
 def passes_through(model: Model, face: Face, before: State, after: State) -> bool:
@@ -223,64 +224,21 @@ def corners_of(model: Model, face: Face, z: State) -> Complex:
 
 def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
-    beam, body = model.beams[face.first], model.bodies[face.body]
     view = _View(model, face, z)
-    ahead, kinks = model.leads.recall(z, (face, penalty.lead), lambda: view.zones(penalty.lead))
+    ahead, kinks = model.known.recall(z, ("lead", face, penalty.lead), lambda: view.zones(penalty.lead))
     zones = replace(ahead, least=ahead.least + penalty.lead)
-    line = view.line
-
-    points, weights = gauss(quadrature)
-    width = zones.intervals[:, 1] - zones.intervals[:, 0]
-    zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
-    e, xi = line.locate(zeta)
-    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
-
-    there = line.around(zeta)
-    x, (y, rest) = as_plane(line.nodes[e] + there.way), view.place_and_rest(there)
+    places = gauss_places(zones, view.line, quadrature)
+    y, rest = view.place_and_rest(places[1])
     near = face.outline.near(y)
-    n = view.turned(near.normal)
-    r = x - view.centre[:, None]
     # the contact force needs the unrounded gap; for the interval ends rounded points suffice
-    g = face.outline.exact_distance(y, rest, near) - face.edge.at(zeta) - penalty.lead
-
-    H = shapes(xi)
-    moves = body.dofs is not None
-
-    def by_twice() -> Array:
-        p = view.by(np.array([n[1], -n[0]]), H, e, r, moves=moves)
-        g_qq = (near.bend * p)[:, None] * p
-        g_qq[:7, :7] += projected_hessian(n, H, line, e)
-        if moves:
-            across = np.array([-n[1], n[0]])  # across·w = −n·k × w
-            turning = np.concatenate([projected_gradient(across, H, line, e), -across])
-            g_qq[:9, 9] += turning
-            g_qq[9, :9] += turning
-            g_qq[9, 9] -= (n * r).sum(axis=0)
-        return np.asarray(g_qq)
-
-    ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
+    g = face.outline.exact_distance(y, rest, near) - face.edge.at(places[0])
+    surface = g, view.turned(near.normal), near.bend, near.distance
+    contact = rigid_touch(model, face, penalty, quadrature, z, zones, places, surface)
+    ends = np.isin(zones.intervals, [end for end in (0.0, float(view.line.n)) if end not in face.own])
     bends = _bends(zones, kinks)
-    points_per_place = count_points_per_place(quadrature, e)
-    weight = penalty.stiffness * ds
-    return Touch(
-        pair=face,
-        zones=zones,
-        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
-        points_per_place=points_per_place,
-        stiffness=weight,
-        gap=g,
-        gap_by=cache(lambda: view.by(n, H, e, r, moves=moves)),
-        gap_by_twice=cache(by_twice),
-        zeta=zeta,
-        zeta_m=np.empty(0),
-        x=x,
-        x_m=x - near.distance * n,
-        normal=n,
-        extra_hessian=partial(_corner_terms, view, zones, bends, kinks, penalty, quadrature, moves=moves)
-        if bends
-        else None,
-        sharp=bool(ends.any()) or bool(bends) or bool(near.corner.any()),
-    )
+    sharp = bool(ends.any()) or bool(bends) or bool(near.corner.any())
+    corners = partial(_corner_terms, view, zones, bends, kinks, penalty, quadrature) if bends else None
+    return replace(contact, extra_hessian=corners, sharp=sharp)
 
 
 def _bends(zones: Zones, kinks: dict[float, np.int64]) -> list[tuple[int, float]]:
@@ -296,11 +254,9 @@ def _corner_terms(
     kinks: dict[float, np.int64],
     penalty: Penalty,
     quadrature: int,
-    *,
-    moves: bool,
 ) -> Array:
     """Second-derivative terms (m, m, k) of the moving places at corners."""
-    size = 10 if moves else 7
+    size = 10 if view.moves else 7
     terms = np.zeros((size, size, len(zones.intervals) * quadrature))
     for i, end in bends:
         # the element that contains the interval: at a node the next interval has the same term
@@ -316,7 +272,7 @@ def _corner_terms(
         difference = view.turned((before - behind)[:, None])
         slope = steeper[first] - steeper[1 - first]
         gap = float(view.gap(np.array([end]))[0]) - penalty.lead
-        by = view.by(difference, shapes(xi), e, x - view.centre[:, None], moves=moves)[:, 0]
+        by = by_motions(difference, shapes(xi), view.line, e, x - view.centre[:, None], moves=view.moves)[:, 0]
         terms[:, :, (i + 1) * quadrature - 1] = (
             -penalty.stiffness * gap / slope * float(view.line.lengths[e[0]]) * np.outer(by, by)
         )
@@ -330,6 +286,7 @@ class _View:
         self.face = face
         self.line: NeutralLine = model.line(model.beams[face.first], z)
         body: BodyPart = model.bodies[face.body]
+        self.moves = body.dofs is not None
         X, Y, self.phi = model.body_state(body, z)
         self.centre = body.centre + np.array([X, Y])
         rest = np.zeros(2) if body.dofs is None else z.rest[body.dofs[:2]]
@@ -358,13 +315,6 @@ class _View:
     def gap(self, zeta: Array) -> Array:
         """Gap g (k,)."""
         return np.asarray(self.face.outline.near(self.place(zeta)).distance - self.face.edge.at(zeta))
-
-    def by(self, v: Array, H: Array, e: Index, r: Array, *, moves: bool) -> Array:
-        """Derivatives of v·δu (m, k) by the line's element, and by the body's three unknowns if it ``moves``."""
-        own = projected_gradient(v, H, self.line, e)
-        if not moves:
-            return own
-        return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
 
     def tips(self) -> tuple[Complex, Complex]:
         """Current positions of tips and mean directions of their contact force, (t,) both, as complex numbers."""
@@ -399,7 +349,7 @@ class _View:
 
         def at(zeta: Array, none_m: Array) -> Gap:
             there = self._at(zeta, none_m)
-            return replace(there, g=there.g - lead) if lead else there
+            return there._replace(g=there.g - lead) if lead else there
 
         zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
         borders, kinks = self._borders(zeta)

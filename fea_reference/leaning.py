@@ -22,7 +22,7 @@ contact surface.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -32,10 +32,11 @@ from fea_reference.hermite import Index
 from fea_reference.state import State
 
 _LINE = 7  # unknowns of an element's line
-_TANGENTS = (2, 5)  # positions of the tangent angles among these
+TANGENTS = (2, 5)
+"""Positions of the tangent angles among these."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Span:
     """A beam: the slice ``part`` of all elements, their unknowns ``dofs`` (7, n), and True for ``welded`` ends (2).
 
@@ -73,32 +74,21 @@ class Lean:
     share: Array
 
 
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Unknowns at k places on lines; constant during the motion.
+@dataclass(frozen=True)
+class Chain:
+    """Chain rule from the unknowns of element lines, and of a body, to all unknowns, at k places.
 
     Attributes:
         dofs: unknowns (M, k); the first m belong to the lines' own elements and the body, with θ in place of ψ.
         leans: contributions to the tangent angles ψ among the m.
         shares: line, first of the six rows of M for an element's nodes, and the element (k,) at every place.
+        chords: chords of all elements.
     """
 
     dofs: Index
     leans: tuple[Lean, ...]
     shares: tuple[tuple[int, int, Index], ...]
-
-
-@dataclass(frozen=True)
-class Chain:
-    """Chain rule from the unknowns of element lines, and of a body, to all unknowns, with the shear of ``chords``."""
-
-    places: Places
     chords: Chords
-
-    @property
-    def dofs(self) -> Index:
-        """Unknowns (M, k)."""
-        return self.places.dofs
 
     @cached_property
     def _leans(self) -> list[tuple[int, slice, Array, Lean]]:
@@ -106,7 +96,7 @@ class Chain:
         by = self.chords.shear_by
         return [
             (lean.row, slice(lean.begin, lean.begin + 6), lean.share * by[:, lean.elements], lean)
-            for lean in self.places.leans
+            for lean in self.leans
         ]
 
     def gradient(self, local: Array) -> Array:
@@ -143,38 +133,30 @@ class Chain:
         return own
 
 
-def places(lines: tuple[tuple[Span, Index], ...], body: Index) -> Places:
-    """Unknowns of k places on one or two lines and of a body, ``body`` (0 or 3, k), in this order.
+@lru_cache(maxsize=64)
+def places(
+    spans: tuple[Span, ...], elements: tuple[bytes, ...], body: tuple[int, ...]
+) -> tuple[Index, tuple[Lean, ...], tuple[tuple[int, int, Index], ...]]:
+    """Unknowns, leans and shares of a chain of k places on one or two lines and of a ``body`` (0 or 3), in this order.
 
-    Args:
-        lines: beam, and element (k,) of every place counted in the beam, per line.
-        body: may be empty.
+    ``elements`` are the bytes of the elements (k,) of the places, counted in every line's beam.
     """
-    dofs = [*(span.dofs[:, e] for span, e in lines), body]
-    shares = [(i, _LINE * i, e) for i, (_, e) in enumerate(lines)]
+    numbers = [np.frombuffer(of_line, dtype=np.int64) for of_line in elements]
+    dofs = [span.dofs[:, e] for span, e in zip(spans, numbers, strict=True)]
+    dofs.append(np.repeat(np.array(body, dtype=np.int64)[:, None], numbers[0].size, axis=1))
+    shares = [(i, _LINE * i, e) for i, e in enumerate(numbers)]
     leans: list[Lean] = []
-    row = _LINE * len(lines) + len(body)
-    for i, (span, e) in enumerate(lines):
+    row = _LINE * len(spans) + len(body)
+    for i, (span, e) in enumerate(zip(spans, numbers, strict=True)):
         if not span.slips:
             continue
         for tangent, neighbour in enumerate((np.maximum(e - 1, 0), np.minimum(e + 1, span.dofs.shape[1] - 1))):
             at_end = neighbour == e
             own = np.where(at_end, 0.0 if span.welded[tangent] else 1.0, 0.5)
-            line, angle = _LINE * i, _LINE * i + _TANGENTS[tangent]
+            line, angle = _LINE * i, _LINE * i + TANGENTS[tangent]
             leans.append(Lean(angle, line, span.part.start + e, own))
             leans.append(Lean(angle, row, span.part.start + neighbour, np.where(at_end, 0.0, 0.5)))
             dofs.append(span.dofs[:6, neighbour])
             shares.append((i, row, neighbour))
             row += 6
-    return Places(np.concatenate(dofs), tuple(leans), tuple(shares))
-
-
-def own_places(span: Span, e: Index) -> Places:
-    """Unknowns of elements (k,) of a beam with the sections' rotations as tangents."""
-    return Places(span.dofs[:, e], (), ((0, 0, e),))
-
-
-def sheared_places(span: Span, e: Index) -> Places:
-    """Unknowns of separate elements (k,) of a beam, tangent at both ends by their own shear angle."""
-    leans = [Lean(row, 0, span.part.start + e, np.ones(e.size)) for row in _TANGENTS] if span.slips else []
-    return Places(span.dofs[:, e], tuple(leans), ((0, 0, e),))
+    return np.concatenate(dofs), tuple(leans), tuple(shares)

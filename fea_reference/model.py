@@ -38,17 +38,15 @@ from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import Chords, ElementForces, Elements, chords, forces, reference
 from fea_reference.hermite import Index, NeutralLine, chord_speed_excess
-from fea_reference.known import Memory, Recent
-from fea_reference.leaning import Chain, Places, Span, own_places, places, sheared_places, tangent_angles
+from fea_reference.known import Memory
+from fea_reference.leaning import TANGENTS, Chain, Lean, Span, places, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
-from fea_reference.state import Complex, State
+from fea_reference.state import State
 from fea_reference.stops import StopPart, stops_of
-from fea_reference.touch import Contact, Penalty, Touch
 from fea_reference.upright import shear_layers
-from fea_reference.zones import Survey, Zones
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # Gauss points per element: the neutral line is a cubic there
 
@@ -235,13 +233,9 @@ class Model:
     ``guides`` are rows of drives with the constant value zero, and ``apart`` the ends to be assembled. ``stiffest``
     is the largest 12 EI/h² of the elements, and ``moving`` are the motions among the unknowns.
 
-    ``spans`` are the beams' elements by name, and ``placed`` the unknowns at places by beams and elements.
+    ``spans`` are the beams' elements by name.
 
-    Memories of results by state: ``chorded`` chords and ``bends`` forces of elements, ``lines`` neutral lines by
-    beam, ``discs`` bounding discs and ``distances`` their distances from edges (:mod:`fea_reference.far`),
-    ``surveys`` gaps of beams, ``overlaps`` zones of contacts, ``leads`` zones on rigid bodies with a lead and their
-    corners, ``touches`` evaluated contacts, ``loaded`` initial places of loads on beams. A remembered value holds no
-    state: the memory would keep the state alive.
+    ``known`` remembers results by state.
     """
 
     units: Units
@@ -264,19 +258,7 @@ class Model:
     moving: Index
     patterns: Patterns = field(repr=False)
     spans: dict[str, Span] = field(repr=False)
-    placed: Recent[tuple[str | bytes, ...], Places] = field(default_factory=Recent, repr=False)
-    chorded: Memory[None, Chords] = field(default_factory=Memory, repr=False)
-    bends: Memory[None, ElementForces] = field(default_factory=Memory, repr=False)
-    lines: Memory[str | tuple[str, bytes], NeutralLine] = field(default_factory=Memory, repr=False)
-    discs: Memory[str, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
-    distances: Memory[Contact, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
-    surveys: Memory[tuple[Contact, float], Survey] = field(default_factory=Memory, repr=False)
-    overlaps: Memory[Contact, Zones] = field(default_factory=Memory, repr=False)
-    leads: Memory[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(
-        default_factory=Memory, repr=False
-    )
-    touches: Memory[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Memory, repr=False)
-    loaded: Memory[str, Array] = field(default_factory=Memory, repr=False)
+    known: Memory = field(default_factory=Memory, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
@@ -304,15 +286,17 @@ class Model:
 
     def chords(self, z: State) -> Chords:
         """Chords of all elements in state ``z``."""
-        return self.chorded.recall(z, None, lambda: chords(self.elements, self.element_dofs, z))
+        return self.known.recall(z, "chords", lambda: chords(self.elements, self.element_dofs, z))
 
     def bend(self, z: State) -> ElementForces:
         """Forces, stiffness and energy of all elements in state ``z``."""
-        return self.bends.recall(z, None, lambda: forces(self.elements, self.chords(z), z.values[self.element_dofs[6]]))
+        return self.known.recall(
+            z, "forces", lambda: forces(self.elements, self.chords(z), z.values[self.element_dofs[6]])
+        )
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
-        return self.lines.recall(z, beam.name, lambda: self._line(beam, z))
+        return self.known.recall(z, ("line", beam.name), lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
         return self._through(beam, tangent_angles(self.spans[beam.name], self.chords(z).shear[beam.elements], z), z)
@@ -338,7 +322,7 @@ class Model:
         The result is a line of 2 k − 1 elements, of which only 0, 2, … 2 k − 2 have a meaning. The speed l (1 + (ψ₂ −
         ψ₁)²/16) of the chord replaces the speed from the axial force.
         """
-        return self.lines.recall(z, (beam.name, e.tobytes()), lambda: self._separate_line(beam, e, z))
+        return self.known.recall(z, ("line", beam.name, e.tobytes()), lambda: self._separate_line(beam, e, z))
 
     def _separate_line(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         nodes = np.stack([e, e + 1], axis=1).ravel()
@@ -351,26 +335,22 @@ class Model:
 
     def separate_chain(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from the elements (k,) of :meth:`separate_elements` to the unknowns."""
-        return Chain(sheared_places(self.spans[beam.name], e), self.chords(z))
-
-    def places(self, on: Sequence[tuple[BeamPart, Index]], body: Index | None = None) -> Places:
-        """Unknowns at line elements (k,) of beams, and a ``body``'s three unknowns."""
-
-        def find() -> Places:
-            k = on[0][1].size
-            moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
-            return places(tuple((self.spans[beam.name], e) for beam, e in on), moved)
-
-        key = (b"" if body is None else body.tobytes(), *(part for beam, e in on for part in (beam.name, e.tobytes())))
-        return self.placed.recall(key, find)
+        span, all_of_own = self.spans[beam.name], np.ones(e.size)
+        leans = tuple(Lean(row, 0, span.part.start + e, all_of_own) for row in TANGENTS) if span.slips else ()
+        return Chain(span.dofs[:, e], leans, ((0, 0, e),), self.chords(z))
 
     def chain(self, on: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
         """Chain rule from line elements (k,) of beams, and a ``body``'s three unknowns, to the unknowns."""
-        return Chain(self.places(on, body), self.chords(z))
+        spans, elements = tuple(self.spans[beam.name] for beam, _ in on), tuple(e.tobytes() for _, e in on)
+        return Chain(*places(spans, elements, () if body is None else tuple(body.tolist())), self.chords(z))
 
     def chain_of_sections(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from :meth:`line_of_sections` to the unknowns, at elements (k,) of a beam."""
-        return Chain(own_places(self.spans[beam.name], e), self.chords(z))
+        return Chain(self.spans[beam.name].dofs[:, e], (), ((0, 0, e),), self.chords(z))
+
+    def spread(self, dofs: Index, values: Array) -> Array:
+        """The sum (size,) of ``values`` at unknowns ``dofs``, arrays of the same shape."""
+        return np.asarray(np.bincount(dofs.ravel(), values.ravel(), self.size), dtype=float)
 
     def body_state(self, body: BodyPart, z: State) -> Array:
         """(X, Y, φ) of a body, zero for a fixed body."""

@@ -14,19 +14,13 @@ _FEW = 5  # points: up to this number plain numbers are faster than arrays
 _ARRIVED = 1e-8  # elements: last Newton step, with an error of the order of its square
 
 
-def project(line: NeutralLine, points: Array, zeta: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Closest places of ``line`` to ``points`` (2, k), by Newton's method from ``zeta`` (k,).
+def closest(line: NeutralLine, points: Complex, zeta: Array) -> tuple[Array, NDArray[np.bool_], Around]:
+    """Closest places to points x + i y (k,), by Newton's method from ``zeta`` (k,).
 
     Returns:
-        Places ζ (k,) with (x − x_m)·x_m' = 0, and True (k,) where found: a point beyond an end of the line has no
-        closest point within.
+        Places ζ (k,) with (x − x_m)·x_m' = 0, True (k,) where found, and the line at these places. A point beyond an
+        end of the line has no closest point within.
     """
-    zeta, found, _ = closest(line, points[0] + 1j * points[1], zeta)
-    return zeta, found
-
-
-def closest(line: NeutralLine, points: Complex, zeta: Array) -> tuple[Array, NDArray[np.bool_], Around]:
-    """Closest places to points x + i y (k,), True (k,) where found, and the line at these places."""
     if 0 < zeta.size <= _FEW:
         found_places = [_closest_to(line, *start) for start in zip(points.tolist(), zeta.tolist(), strict=True)]
         places, found_here, *line_there = map(np.array, zip(*found_places, strict=True))

@@ -71,7 +71,7 @@ def _end_forces(model: Model, system: System, beam: BeamPart) -> tuple[Array, Ar
     place, point, force = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
     for touch in system.touches:
         gradient = touch.gradient
-        for of_line, row, elements in touch.chain.places.shares:
+        for of_line, row, elements in touch.chain.shares:
             if number == (touch.pair.second if of_line == 1 and isinstance(touch.pair, Pair) else touch.pair.first):
                 for i in range(3):
                     np.add.at(ends[i], elements, gradient[row + i])
@@ -79,7 +79,7 @@ def _end_forces(model: Model, system: System, beam: BeamPart) -> tuple[Array, Ar
     for load in system.loads:
         if load.part.beam != number:
             continue
-        for _, row, elements in load.chain.places.shares:
+        for _, row, elements in load.chain.shares:
             for i in range(3):
                 np.add.at(ends[i], elements, -load.gradient[row + i])
     return ends, place, point, force

@@ -24,7 +24,7 @@ import numpy as np
 
 from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
-from fea_reference.model import MOMENTS, WAY, BodyPart, JointPart, LoadPart, Model
+from fea_reference.model import MOMENTS, WAY, BodyPart, DrivePart, JointPart, LoadPart, Model
 from fea_reference.pattern import Single
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
@@ -49,51 +49,47 @@ class _Frame:
 
 
 class _Sums:
-    """Sums of forces and of entries of the tangent."""
+    """Sums of forces, by unknown, and of entries of the tangent, by row and column."""
 
     def __init__(self) -> None:
-        self.at: list[int] = []
-        self.forces: list[float] = []
-        self.rows: list[int] = []
-        self.columns: list[int] = []
-        self.entries: list[float] = []
+        self.forces: list[tuple[int, float]] = []
+        self.entries: list[tuple[int, int, float]] = []
 
-    def push(self, unknown: int, force: float) -> None:
-        """Add a force to an unknown."""
-        self.at.append(unknown)
-        self.forces.append(force)
+    def link(self, row: int | None, multiplier: float, unknown: int, slope: float) -> None:
+        """Add a row's derivative by an unknown; a load has a value in place of the multiplier, and no row."""
+        self.forces.append((unknown, multiplier * slope))
+        if row is not None:
+            self.entries += ((row, unknown, slope), (unknown, row, slope))
 
-    def couple(self, row: int, unknown: int, value: float) -> None:
-        """Add a derivative of a row by an unknown, and its mirror image."""
-        self.rows += (row, unknown)
-        self.columns += (unknown, row)
-        self.entries += (value, value)
+    def hold(self, row: int | None, multiplier: float, frame: _Frame, n: Vector, a: Vector) -> None:
+        """Add a row's derivative n·(X + a) by the motions of a body."""
+        if not frame.dofs:
+            return
+        for dof, slope in zip(frame.dofs, (*n, a[0] * n[1] - a[1] * n[0]), strict=True):
+            if slope != 0.0 or dof == frame.dofs[2]:
+                self.link(row, multiplier, dof, slope)
+        self.entries.append((frame.dofs[2], frame.dofs[2], -multiplier * (n[0] * a[0] + n[1] * a[1])))
 
-    def stiffen(self, unknown: int, value: float) -> None:
-        """Add a derivative of the unknown's own force."""
-        self.rows.append(unknown)
-        self.columns.append(unknown)
-        self.entries.append(value)
+    def guide(self, row: int | None, multiplier: float, part: LoadPart | DrivePart, frame: _Frame) -> float:
+        """The motion of a body along a part's direction, or its rotation, whose derivative is added."""
+        if part.direction is None:
+            self.link(row, multiplier, frame.dofs[2], 1.0)
+            return frame.phi
+        (nx, ny), a, (x, y) = part.direction.tolist(), frame.turned(part.arm), part.arm.tolist()
+        self.hold(row, multiplier, frame, (nx, ny), a)
+        return float(nx * (frame.X + a[0] - x) + ny * (frame.Y + a[1] - y))
 
     def vanish(self, row: int, multiplier: float) -> None:
         """Let the multiplier of an inactive row vanish."""
-        self.push(row, multiplier)
-        self.stiffen(row, 1.0)
+        self.forces.append((row, multiplier))
+        self.entries.append((row, row, 1.0))
 
-    def hold(self, row: int, multiplier: float, frame: _Frame, n: Vector, a: Vector) -> None:
-        """Add a row's derivative n·(X + a) by the motions of a body."""
-        lever = a[0] * n[1] - a[1] * n[0]
-        if frame.dofs:
-            for dof, slope in zip(frame.dofs, n, strict=False):
-                if slope != 0.0:
-                    self.link(row, multiplier, dof, slope)
-            self.link(row, multiplier, frame.dofs[2], lever)
-            self.stiffen(frame.dofs[2], -multiplier * (n[0] * a[0] + n[1] * a[1]))
-
-    def link(self, row: int, multiplier: float, unknown: int, slope: float) -> None:
-        """Add a row's constant derivative by an unknown."""
-        self.push(unknown, multiplier * slope)
-        self.couple(row, unknown, slope)
+    def collected(self, size: int) -> tuple[Array, Single]:
+        """The forces (size,) and the entries."""
+        unknowns, forces = np.array(self.forces).reshape(-1, 2).T
+        rows, columns, entries = np.array(self.entries).reshape(-1, 3).T
+        residual = np.bincount(unknowns.astype(np.int64), forces, size)
+        return np.asarray(residual, dtype=float), Single(rows.astype(np.int64), columns.astype(np.int64), entries)
 
 
 def rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Single]:
@@ -118,25 +114,19 @@ def rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array,
             for row, n, c, X, own, rest in zip(
                 rows, ((sign, 0.0), (0.0, sign)), frame.centre, (frame.X, frame.Y), a, frame.rest, strict=True
             ):
-                sums.push(row, sign * (c + X + own) + sign * rest)
+                sums.forces.append((row, sign * (c + X + own) + sign * rest))
                 sums.hold(row, z.values.item(row), frame, n, a)
     prescribed = values[len(model.loads) : len(model.loads) + len(model.drives)].tolist()
     for part, value in zip((*model.guides, *model.drives), (*[0.0] * len(model.guides), *prescribed), strict=True):
-        frame, multiplier = frames[part.body], z.values.item(part.row)
-        if part.direction is None:
-            sums.push(part.row, frame.phi - value)
-            sums.link(part.row, multiplier, frame.dofs[2], 1.0)
-            continue
-        (nx, ny), a, (x, y) = part.direction.tolist(), frame.turned(part.arm), part.arm.tolist()
-        sums.push(part.row, nx * (frame.X + a[0] - x) + ny * (frame.Y + a[1] - y) - value)
-        sums.hold(part.row, multiplier, frame, (nx, ny), a)
+        motion = sums.guide(part.row, z.values.item(part.row), part, frames[part.body])
+        sums.forces.append((part.row, motion - value))
     if model.apart:
         moments = float(values[model.stepped.index(MOMENTS)])
         for end in model.apart:
-            sums.push(int(end.joint.dofs[2]), -moments * end.moment)
+            sums.forces.append((int(end.joint.dofs[2]), -moments * end.moment))
     for stop, limit in acting_stops(model.stops, acting):
         multiplier = z.values.item(stop.row)
-        sums.push(stop.row, stop.angle(z) - limit)
+        sums.forces.append((stop.row, stop.angle(z) - limit))
         sums.link(stop.row, multiplier, stop.theta, 1.0)
         if stop.phi is not None:
             sums.link(stop.row, multiplier, stop.phi, -1.0)
@@ -145,10 +135,8 @@ def rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array,
             sums.vanish(stop.row, z.values.item(stop.row))
     for load, value in zip(model.loads, values.tolist(), strict=False):
         if isinstance(load, LoadPart) and frames[load.body].dofs:
-            _load(sums, load, frames[load.body], value)
-    residual = np.bincount(np.array(sums.at, dtype=np.int64), np.array(sums.forces), model.size)
-    rows, columns = (np.array(of, dtype=np.int64) for of in (sums.rows, sums.columns))
-    return np.asarray(residual, dtype=float), Single(rows, columns, np.array(sums.entries))
+            sums.guide(None, -value, load, frames[load.body])
+    return sums.collected(model.size)
 
 
 def _join(sums: _Sums, joint: JointPart, frame: _Frame, z: State, way: Sequence[float]) -> None:
@@ -157,23 +145,12 @@ def _join(sums: _Sums, joint: JointPart, frame: _Frame, z: State, way: Sequence[
     for i, n, X in ((0, (-1.0, 0.0), frame.X), (1, (0.0, -1.0), frame.Y)):
         multiplier = z.values.item(rows[i])
         gap = z.values.item(dofs[i]) - frame.centre[i] - X - a[i] + z.rest.item(dofs[i])
-        sums.push(rows[i], gap - way[i])
+        sums.forces.append((rows[i], gap - way[i]))
         sums.link(rows[i], multiplier, dofs[i], 1.0)
         sums.hold(rows[i], multiplier, frame, n, a)
     if len(rows) == 3:
         multiplier = z.values.item(rows[2])
-        sums.push(rows[2], z.values.item(dofs[2]) - frame.phi - joint.angle + z.rest.item(dofs[2]))
+        sums.forces.append((rows[2], z.values.item(dofs[2]) - frame.phi - joint.angle + z.rest.item(dofs[2])))
         sums.link(rows[2], multiplier, dofs[2], 1.0)
         if frame.dofs:
             sums.link(rows[2], multiplier, frame.dofs[2], -1.0)
-
-
-def _load(sums: _Sums, load: LoadPart, frame: _Frame, value: float) -> None:
-    """Add a dead load on a moving body."""
-    if load.direction is None:
-        sums.push(frame.dofs[2], -value)
-        return
-    (nx, ny), a = load.direction.tolist(), frame.turned(load.arm)
-    for dof, along in zip(frame.dofs, (nx, ny, a[0] * ny - a[1] * nx), strict=True):
-        sums.push(dof, -value * along)
-    sums.stiffen(frame.dofs[2], value * (nx * a[0] + ny * a[1]))

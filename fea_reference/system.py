@@ -34,7 +34,7 @@ _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
 @dataclass(frozen=True)
-class Derivative:
+class Tangent:
     """Tangent of a system, assembled and factorised where needed."""
 
     assembled: Callable[[], csc_matrix]
@@ -60,7 +60,7 @@ class System:
     Attributes:
         loads: loads on beams with a nonzero value.
         residual: unbalanced generalised forces and constraint violations, (size,).
-        derivative: derivative of the residual.
+        tangent: derivative of the residual, sparse (size, size).
         scale: the largest generalised force in equilibrium; EI/length² if all forces are round-off.
         floor: round-off of the residual. An element's end force is 12 EI/h² times the angle between tangent and
             chord, so that its round-off is 12 EI/h² times the spacing of machine numbers at the chord's angle. A
@@ -71,7 +71,7 @@ class System:
     z: State
     acting: Acting
     residual: Array
-    derivative: Derivative
+    tangent: Tangent
     elements: ElementForces
     touches: tuple[Touch, ...]
     loads: tuple[BeamLoad, ...]
@@ -79,14 +79,9 @@ class System:
     floor: float
     significant: bool
 
-    @property
-    def tangent(self) -> csc_matrix:
-        """The derivative of the residual, sparse (size, size)."""
-        return self.derivative.matrix
-
     def solve(self, right: Array) -> Array | None:
         """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
-        factors_here = self.derivative.factors
+        factors_here = self.tangent.factors
         solution = None if factors_here is None else factors_here.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
 
@@ -113,8 +108,8 @@ def with_stiffness_factor(model: Model, system: System, contact: Touch, factor: 
     change = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
         contact.pushes
     )
-    changed = system.tangent + model.patterns.matrix([Block(contact.dofs, change)])
-    return replace(system, derivative=Derivative(lambda: changed))
+    changed = system.tangent.matrix + model.patterns.matrix([Block(contact.dofs, change)])
+    return replace(system, tangent=Tangent(lambda: changed))
 
 
 def assemble(
@@ -186,7 +181,7 @@ def _assembled(
     for load in loads:
         parts.append((load.dofs, -load.gradient))
     for dofs, gradient in parts:
-        residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
+        residual += model.spread(dofs, gradient)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
 
@@ -212,7 +207,7 @@ def _assembled(
         z,
         acting,
         residual,
-        Derivative(tangent),
+        Tangent(tangent),
         elements,
         touches,
         loads,

@@ -11,7 +11,7 @@ import numpy as np
 from cprbm_scene.answer import Array, frozen_array
 from fea_reference.edge import Edge
 from fea_reference.facing import Facing, Tapers, facing
-from fea_reference.hermite import Index, NeutralLine
+from fea_reference.hermite import Around, Index, NeutralLine
 from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
@@ -198,6 +198,7 @@ LACKING = 1e-3
 """Share of a zone's force: largest missing force at the zone's end."""
 
 Rigid = Circle | Face
+Places = tuple[Array, Around, Array]
 Contact = Pair | Rigid
 
 
@@ -313,6 +314,15 @@ def gauss(points: int) -> tuple[Array, Array]:
     """Gauss points in [−1, 1] and weights, (points,) both."""
     places, weights = np.polynomial.legendre.leggauss(points)
     return frozen_array(places), frozen_array(weights)
+
+
+def gauss_places(zones: Zones, line: NeutralLine, quadrature: int) -> Places:
+    """Gauss points ζ (k,) of all intervals, the line there, and their arc lengths (k,)."""
+    points, weights = gauss(quadrature)
+    half = 0.5 * (zones.intervals[:, 1:] - zones.intervals[:, :1])
+    zeta = (zones.intervals[:, :1] + half * (points + 1.0)).ravel()
+    there = line.around(zeta)
+    return zeta, there, (half * weights).ravel() * line.lengths[there.element]
 
 
 def count_points_per_place(quadrature: int, *elements: Index) -> int:

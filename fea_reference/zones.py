@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ from cprbm_scene.answer import Array
 from fea_reference.facing import Borders, Tapers, borders, facing
 from fea_reference.hermite import NeutralLine, line_difference
 from fea_reference.neighbours import near_each_other, nearest
-from fea_reference.projection import project
+from fea_reference.projection import closest
 
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
@@ -51,8 +52,7 @@ _EPS = float(np.finfo(float).eps)
 _EVEN = 3.0  # times the mean slope: a cubic with smaller end slopes is monotonic
 
 
-@dataclass(frozen=True, slots=True)
-class Gap:
+class Gap(NamedTuple):
     """g, g', g'' by ζ and ζ_m at places (k,); ``found`` (k,) is True where a closest point exists."""
 
     g: Array
@@ -61,15 +61,10 @@ class Gap:
     zeta_m: Array
     found: NDArray[np.bool_]
 
-    @property
-    def rows(self) -> tuple[Array, Array, Array, Array]:
-        """The rows g, g', g'' and ζ_m, without ``found``."""
-        return self.g, self.slope, self.curvature, self.zeta_m
-
     def chosen(self, selection: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
         """The gap at a selection of the places."""
-        g, slope, curvature, zeta_m = (row[selection] for row in self.rows)
-        return Gap(g, slope, curvature, zeta_m, self.found[selection])
+        g, slope, curvature, zeta_m, found = self
+        return Gap(g[selection], slope[selection], curvature[selection], zeta_m[selection], found[selection])
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,18 +95,12 @@ class Survey:
             return no_zones(self.least)
         zeta, neighbours, there = self.zeta, self.neighbours, self.there
         g, zeta_m = there.g - level, there.zeta_m
-
-        def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array, Array]:
-            gap_there = self.at(where, guess)
-            return gap_there.g - level, gap_there.slope, gap_there.curvature, gap_there.zeta_m
-
         ends = (neighbours & (g[:-1] * g[1:] < 0.0)).nonzero()[0]
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
-            where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
+            where, guess = _roots(self.at, zeta, g, zeta_m, ends, share, level=level)
             new = np.array([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = _with_columns(np.array([zeta, g, zeta_m]), ends, new)
-            neighbours = _with_neighbours(neighbours, ends)
+            (zeta, g, zeta_m), neighbours = _with_columns(np.array([zeta, g, zeta_m]), neighbours, ends, new)
         here, there_next = g[:-1], g[1:]
         negative_parts = neighbours & (np.maximum(here, there_next) <= 0.0) & (here + there_next < 0.0)
         inside = negative_parts.nonzero()[0]
@@ -224,9 +213,10 @@ def has_end_over(first: NeutralLine, second: NeutralLine) -> bool:
 def end_distance(first: NeutralLine, second: NeutralLine) -> float:
     """Distance of the nearer end of the first beam from the second; infinite without a closest point inside."""
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
-    zeta, found = project(second, first.points[:, [0, -1]], near)
+    zeta, found, there = closest(second, first.nodes[[0, -1]], near)
     over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
-    return float(np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))[over].min(initial=np.inf))
+    distance = np.abs(first.nodes[[0, -1]] - second.nodes[there.element] - there.way)
+    return float(distance[over].min(initial=np.inf))
 
 
 def survey_pair(
@@ -330,19 +320,14 @@ def survey(
     """
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     slope, zeta_m = there.slope, there.zeta_m
-
-    def slope_at(where: Array, guess: Array) -> tuple[Array, Array, None, Array]:
-        gap_there = at(where, guess)
-        return gap_there.slope, gap_there.curvature, None, gap_there.zeta_m
-
     # a maximum matters only between two places with negative gaps
     parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
     turning = (neighbours & (slope[:-1] * slope[1:] < 0.0) & parts).nonzero()[0]
     if turning.size and kinks:
-        turning = turning[~_at_kinks(slope_at, zeta, slope, zeta_m, turning, kinks)]
+        turning = turning[~_at_kinks(at, zeta, slope, zeta_m, turning, kinks)]
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
-        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor, _TURNS)
+        where, guess = _roots(at, zeta, slope, zeta_m, turning, share, floor)
         zeta, there, neighbours = _with_places(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
     return Survey(at, zeta, there, neighbours, kinks, least)
@@ -352,28 +337,21 @@ def _with_places(
     zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, inserted: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """Places and gap with further places ``where``, inserted behind the places with index ``left``."""
-    rows = _with_columns(
-        np.array([zeta, *there.rows, there.found]), left, np.array([where, *inserted.rows, inserted.found])
-    )
+    rows, neighbours = _with_columns(np.array([zeta, *there]), neighbours, left, np.array([where, *inserted]))
     zeta, g, slope, curvature, zeta_m, found = rows
-    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _with_neighbours(neighbours, left)
+    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), neighbours
 
 
-def _with_columns(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
-    """``rows`` (r, k) with columns ``new`` (r, m) inserted behind the columns ``left`` (m,); (r, k+m)."""
-    old = np.ones(rows.shape[1] + left.size, dtype=bool)
-    at = left + np.arange(1, left.size + 1)
-    old[at] = False
-    both = np.empty((len(rows), old.size))
-    both[:, old], both[:, at] = rows, new
-    return both
+def _with_columns(
+    rows: Array, neighbours: NDArray[np.bool_], left: NDArray[np.int64], new: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """``rows`` (r, k) with columns ``new`` (r, m) behind the columns ``left`` (m,), and ``neighbours`` (k+m−1,).
 
-
-def _with_neighbours(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """``neighbours`` (k+m−1,) after the insertion of places behind ``left`` (m,), which all had a neighbour."""
-    times = np.ones(neighbours.size, dtype=np.int64)
-    times[left] = 2
-    return np.repeat(neighbours, times)
+    All columns ``left`` had a neighbour.
+    """
+    order = np.concatenate([np.arange(rows.shape[1]), left + 0.5]).argsort()
+    both = np.concatenate([neighbours, [False], neighbours[left]])
+    return np.concatenate([rows, new], axis=1)[:, order], both[order[:-1]]
 
 
 def _with_bends(
@@ -465,24 +443,25 @@ def no_zones(least: float) -> Zones:
 
 
 def _roots(
-    function: Callable[[Array, Array], tuple[Array, Array, Array | None, Array]],
+    at: Callable[[Array, Array], Gap],
     zeta: Array,
     values: Array,
     zeta_m: Array,
     left: NDArray[np.int64],
     share: Array,
     floor: float = 0.0,
-    arrived: float = _ARRIVED,
+    level: float | None = None,
 ) -> tuple[Array, Array]:
-    """Roots between the places ``left`` and the next, where ``values`` change sign, and their ζ_m.
+    """Places between ``left`` and the next with a gap of ``level`` or, without a level, a zero slope; and their ζ_m.
 
-    Newton's method, safeguarded by bisection, starts at the ``share`` of the interval. A step below ``arrived``
-    (elements) is the last. If a value times the bracket is below ``floor``, the integral of the function does not
+    ``values`` change sign there. Newton's method, safeguarded by bisection, starts at the ``share`` of the interval.
+    If a value times the bracket is below ``floor``, the integral of the function does not
     change any more and any place is a root: slopes of beams that lie on a surface are pure round-off.
 
-    If ``function`` returns its second derivative, a step leads to the zero of the osculating parabola. The difference
-    from the Newton step then bounds the error.
+    For a level a step leads to the zero of the osculating parabola. The difference from the Newton step then bounds
+    the error.
     """
+    arrived = _TURNS if level is None else _ARRIVED
     low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
     guess = zeta_m[left] + share * (zeta_m[left + 1] - zeta_m[left])
@@ -491,15 +470,16 @@ def _roots(
     places, closest_there = x.copy(), guess.copy()
     sought = np.arange(x.size)
     for _ in range(_ITERATIONS):
-        f, df, bend, guess = function(x, guess)
+        g, slope, curvature, guess, _ = at(x, guess)
+        f, df = (slope, curvature) if level is None else (g - level, slope)
         below = f * rising < 0.0
         np.copyto(low, x, where=below)
         np.copyto(high, x, where=~below)
         flat = df == 0.0
         newton_step = -f / np.where(flat, 1.0, df)
         newton = x + newton_step
-        if bend is not None:
-            correction = _to_parabola(newton_step, df, bend)
+        if level is not None:
+            correction = _to_parabola(newton_step, df, curvature)
             newton += correction
         # a step out of the bracket by round-off has converged; bisection would restart from afar
         good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
@@ -508,7 +488,7 @@ def _roots(
         step[np.abs(f) * (high - low) <= floor] = 0.0
         x, guess = x + step, guess + pace * step
         size = np.abs(step)
-        if bend is not None:
+        if level is not None:
             size = np.where(good & (size < _SHORT) & (correction != 0.0), np.minimum(size, np.abs(correction)), size)
         # the error of the last step is of second or third order
         going = size >= np.where(good, arrived, _ARRIVED)
@@ -530,7 +510,7 @@ def _to_parabola(newton_step: Array, slope: Array, bend: Array) -> Array:
 
 
 def _at_kinks(
-    slope_at: Callable[[Array, Array], tuple[Array, Array, Array | None, Array]],
+    at: Callable[[Array, Array], Gap],
     zeta: Array,
     slope: Array,
     zeta_m: Array,
@@ -547,8 +527,8 @@ def _at_kinks(
     for end, other, inwards in ((left, right, _ARRIVED), (right, left, -_ARRIVED)):
         beside = np.flatnonzero(wide & np.isin(zeta[end], kinks))
         if beside.size:
-            there, _, _, _ = slope_at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
-            at_kink[beside] |= there * slope[other[beside]] > 0.0
+            there = at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
+            at_kink[beside] |= there.slope * slope[other[beside]] > 0.0
     return at_kink
 
 
