@@ -53,8 +53,8 @@ def step_between(model: Model, start: State, end: State) -> Array:
     (dx, dy), (along, across) = start.difference(*ends), end.difference(*ends)
     ratio = (along + 1j * across) / (dx + 1j * dy)
     turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
-    changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-    return _joined(model, (end.values - start.values) + (end.rest - start.rest), changes)
+    moved = (end.values - start.values) + (end.rest - start.rest)
+    return _joined(model, moved, np.array([stretch * dx - turn * dy, turn * dx + stretch * dy]))
 
 
 def _chords(model: Model, z: State, step: Array) -> tuple[Array, Array, Array, Array]:

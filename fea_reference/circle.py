@@ -37,10 +37,9 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import CircleContact, Scene
-from fea_reference.edge import edge_of
 from fea_reference.hermite import Around, NeutralLine, as_plane
 from fea_reference.model import Model
-from fea_reference.rigid_touch import rigid_touch
+from fea_reference.rigid_touch import LAYERS, on_bodies, rigid_touch
 from fea_reference.state import Complex, State, squared, summed
 from fea_reference.swept import swept_over
 from fea_reference.touch import Circle, Penalty, Touch, gauss_places
@@ -49,44 +48,18 @@ from fea_reference.zones import Gap, Zones, negative, steps_within
 _BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
 _SAGITTA = 0.15  # times the square of a motion along an arc: largest deviation of its chord
 _AT_END = 1e-6  # elements
-_LAYERS = 32.0  # layers per beam length, for the first penalty
-_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
-# Layers per beam length at the standard penetration: their error is below 1e-7, while thinner layers amplify the
-# round-off of a clamp's place. Penetration goes with the fourth power of the layer, so that a smaller requested
-# penetration has thinner layers.
-_THINNEST, _STANDARD = 800.0, 1e-4
 
 
 def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
     """The scene's contacts of a beam with a circle; ``penetration`` as in the settings."""
     contacts = []
-    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
-    beams = [beam.name for beam in model.beams]
-    bodies = [body.name for body in model.bodies]
-    for name, contact in scene.contacts.items():
-        if not isinstance(contact, CircleContact):
-            continue
-        first, body = beams.index(contact.beam), bodies.index(contact.body)
-        beam = model.beams[first]
-        at = (np.array(contact.center) - model.units.origin) / model.units.length
-        x, y = at - model.bodies[body].centre
-        edge = edge_of(beam.record, beam.elements.stop - beam.elements.start, model.units.length, thick=contact.thick)
-        radius = contact.radius / model.units.length
-        h = float(model.elements.length[beam.elements.start])
-        layer = max(h, 0.5 * beam.thickness, min(beam.length / _LAYERS, radius))
-        contacts.append(
-            Circle(
-                name,
-                first,
-                body,
-                (float(x), float(y)),
-                radius,
-                edge,
-                2.0 * edge.nearest if contact.thick else 1.0,
-                beam.softest / layer**4,
-                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
-            )
-        )
+    records = {name: record for name, record in scene.contacts.items() if isinstance(record, CircleContact)}
+    for name, contact, first, body, edge, h, stiffest in on_bodies(model, records, penetration):
+        beam, radius = model.beams[first], contact.radius / model.units.length
+        x, y = (np.array(contact.center) - model.units.origin) / model.units.length - model.bodies[body].centre
+        layer = max(h, 0.5 * beam.thickness, min(beam.length / LAYERS, radius))
+        scale, softness = 2.0 * edge.nearest if contact.thick else 1.0, beam.softest / layer**4
+        contacts.append(Circle(name, first, body, (float(x), float(y)), radius, edge, scale, softness, stiffest))
     return tuple(contacts)
 
 
@@ -239,7 +212,7 @@ def _zones_below(relative: _RelativeLine, circle: Circle, lead: float) -> Zones:
         ahead = n.conj() * there.ahead
         slope = ahead.real - circle.edge.slope(zeta) if circle.edge.varies else ahead.real
         curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
-        return Gap(g - lead, slope, curvature, zeta_m, np.ones(zeta.shape, dtype=bool))
+        return Gap(g - lead, slope, curvature, zeta_m, zeta == zeta)
 
     zeta, neighbours = steps_within(relative.near(circle, lead), circle.edge.inner)
     floor = float(np.finfo(float).eps) * line.longest

@@ -402,11 +402,10 @@ def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z:
         p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
         # p and k by the unknowns of both lines; k has those of the second alone
         k = projected_gradient(n, shape_slopes(xi_m), line_m, e_m)
-        if fixed is None:
-            a_Z, J_Z, d_Z = np.array([a, J, d]) / Z
-        else:
-            of_fixed = np.array([-1.0 / np.where(d == 0.0, 1.0, d), 0.0 * d, 0.0 * d])
-            a_Z, J_Z, d_Z = np.where(fixed, of_fixed, np.array([a, J, d]) / np.where(fixed, 1.0, Z))
+        shares = np.array([a, J, d]) / (Z if fixed is None else np.where(fixed, 1.0, Z))
+        if fixed is not None:
+            shares = np.where(fixed, [-1.0 / np.where(d == 0.0, 1.0, d), 0.0 * d, 0.0 * d], shares)
+        a_Z, J_Z, d_Z = shares
         d_qq = (-a_Z * p)[:, None] * p
         pk = (-J_Z * p)[:, None] * k
         d_qq[:, _LINE:] += pk

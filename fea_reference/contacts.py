@@ -63,8 +63,11 @@ def touch(
     model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None = None
 ) -> Touch:
     """Contact energy derivatives, see :func:`fea_reference.contact.touch`; only pairs of beams are held."""
-    key = "touch", pair, penalty, quadrature, held_depth
-    return model.known.recall(z, key, lambda: _touch(model, pair, penalty, quadrature, z, held_depth))
+    return model.known.recall(
+        z,
+        ("touch", pair, penalty, quadrature, held_depth),
+        lambda: _touch(model, pair, penalty, quadrature, z, held_depth),
+    )
 
 
 def _touch(model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None) -> Touch:

@@ -41,7 +41,7 @@ Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from skfem import BilinearForm, CellBasis, ElementLineP2, MeshLine
@@ -109,23 +109,18 @@ class Chords:
         return _by_nodes(twice, 6)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class ElementForces:
     """Derivatives of Π_e by (x₁, y₁, θ₁, x₂, y₂, θ₂, N); the element is the last index.
 
-    ``gradient`` (7, n), ``energy`` the strain energy (n,), ``rotation`` ϑ (2, n). ``motions`` (5, 5, n) are second
-    derivatives by the chord's (dx, dy), θ₁, θ₂ and N.
+    ``gradient`` (7, n), ``energy`` the strain energy (n,), ``rotation`` ϑ (2, n), and ``hessian`` (7, 7, n), evaluated
+    at the first call.
     """
 
     gradient: Array
     energy: Array
     rotation: Array
-    motions: Callable[[], Array]
-
-    @cached_property
-    def hessian(self) -> Array:
-        """Second derivatives (7, 7, n)."""
-        return _by_nodes(self.motions(), 7)
+    hessian: Callable[[], Array]
 
 
 def _by_nodes(twice: Array, count: int) -> Array:
@@ -219,8 +214,9 @@ def forces(elements: Elements, chord: Chords, N: Array) -> ElementForces:
     V = total / l
     by_motions = np.array([N * cos + V * sin, N * sin - V * cos, *moment, elongation - stretched * N])
 
-    def motions() -> Array:
-        """Of the chord along t, with its normal n: ∂ϑ = ∂θ − n·∂d/l, ∂l = t·∂d."""
+    @cache
+    def hessian() -> Array:
+        """By the chord d, with direction t and normal n: ∂ϑ = ∂θ − n·∂d/l, ∂l = t·∂d."""
         K = elements.bending + N * elements.shortening
         K = K + (12.0 * quartic * gamma**2 - mixed * N**2) * slip[:, None] * slip
         of_turn, (nx, ny) = K[0] + K[1], chord.across / l
@@ -231,9 +227,9 @@ def forces(elements: Elements, chord: Chords, N: Array) -> ElementForces:
         xN, yN = cos - (s1 + s2) * nx, sin - (s1 + s2) * ny
         by_N = -stretched - mixed * gamma**2
         rows = [xx, xy, x1, x2, xN], [xy, yy, y1, y2, yN], [x1, y1, *K[0], s1], [x2, y2, *K[1], s2]
-        return np.array([*rows, [xN, yN, s1, s2, by_N]])
+        return _by_nodes(np.array([*rows, [xN, yN, s1, s2, by_N]]), 7)
 
-    return ElementForces(by_motions[_MOTIONS] * _SIGNS[:, None], energy, chord.rotation, motions)
+    return ElementForces(by_motions[_MOTIONS] * _SIGNS[:, None], energy, chord.rotation, hessian)
 
 
 def layer(elements: Elements, e: int) -> float:

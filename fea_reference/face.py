@@ -49,23 +49,18 @@ import numpy as np
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import EdgeContact, Scene
 from fea_reference import swept
-from fea_reference.edge import edge_of
 from fea_reference.element import layer
 from fea_reference.hermite import Around, NeutralLine, as_plane, shapes
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import ends_on_edge
-from fea_reference.rigid_touch import by_motions, rigid_touch
+from fea_reference.rigid_touch import LAYERS, by_motions, on_bodies, rigid_touch
 from fea_reference.state import Complex, State, summed
 from fea_reference.swept import ClosestPlaces, swept_over
 from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, gauss_places
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, no_zones
 
 _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of a beam in contact as a line
-_LAYERS = 32.0  # layers per beam length, for the first penalty
-_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
-# as on a circle: the error of thinner layers per beam length is below their round-off at a clamp
-_THINNEST, _STANDARD = 800.0, 1e-4
 _REACH = 2.0  # elements: neighbourhood of a corner
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
@@ -79,20 +74,12 @@ _PARTS = 4  # subdivision of an element for the crossing check
 
 def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
     """The scene's contacts of a beam with an edge; ``penetration`` as in the settings."""
-    contacts = []
-    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
-    beams = [beam.name for beam in model.beams]
-    bodies = [body.name for body in model.bodies]
-    for name, contact in scene.contacts.items():
-        if not isinstance(contact, EdgeContact):
-            continue
-        first, body = beams.index(contact.beam), bodies.index(contact.body)
+    contacts, units = [], model.units
+    records = {name: record for name, record in scene.contacts.items() if isinstance(record, EdgeContact)}
+    for name, contact, first, body, edge, h, stiffest in on_bodies(model, records, penetration):
         beam = model.beams[first]
         elements = beam.elements.stop - beam.elements.start
-        units = model.units
-        edge = edge_of(beam.record, elements, units.length, thick=contact.thick)
-        h = float(model.elements.length[beam.elements.start])
-        width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
+        width = max(h, 0.5 * beam.thickness, beam.length / LAYERS)
         outline, own = ends_on_edge(
             scene, contact, units.origin + units.length * model.bodies[body].centre, units.length
         )
@@ -113,7 +100,7 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 2.0 * edge.nearest if contact.thick else _SLENDER,
                 max(2.0 * edge.nearest, THINNEST) if contact.thick else 1.0,
                 sharpness(outline) * beam.softest / width**4,
-                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
+                stiffest,
             )
         )
     return tuple(contacts)

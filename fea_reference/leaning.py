@@ -154,8 +154,8 @@ def places(
             at_end = neighbour == e
             own = np.where(at_end, 0.0 if span.welded[tangent] else 1.0, 0.5)
             line, angle = _LINE * i, _LINE * i + TANGENTS[tangent]
-            leans.append(Lean(angle, line, span.part.start + e, own))
-            leans.append(Lean(angle, row, span.part.start + neighbour, np.where(at_end, 0.0, 0.5)))
+            beside = Lean(angle, row, span.part.start + neighbour, np.where(at_end, 0.0, 0.5))
+            leans += [Lean(angle, line, span.part.start + e, own), beside]
             dofs.append(span.dofs[:6, neighbour])
             shares.append((i, row, neighbour))
             row += 6

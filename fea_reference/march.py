@@ -257,8 +257,7 @@ class March:
         settings: Settings | None = None,
     ) -> Solved:
         """Equilibrium near ``z`` with the current constraints, see :func:`fea_reference.newton.equilibrium`."""
-        settings = settings or self.settings
-        solved = equilibrium(self.model, settings, penalties, values, z, self.acting, depths, pushes)
+        solved = equilibrium(self.model, settings or self.settings, penalties, values, z, self.acting, depths, pushes)
         self.iterations += solved.iterations
         return solved
 

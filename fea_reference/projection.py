@@ -69,5 +69,5 @@ def _closest_to(line: NeutralLine, point: complex, zeta: float) -> tuple[float, 
         zeta += change
         if abs(change) < _ARRIVED:
             break
-    found = abs(f) <= 1e-6 * math.sqrt(speed * (r.real * r.real + r.imag * r.imag + speed))
-    return zeta, found, element, way + change * ahead, ahead + change * bent, bent
+    size = math.sqrt(speed * (r.real * r.real + r.imag * r.imag + speed))
+    return zeta, abs(f) <= 1e-6 * size, element, way + change * ahead, ahead + change * bent, bent

@@ -79,11 +79,6 @@ class _Sums:
         self.hold(row, multiplier, frame, (nx, ny), a)
         return float(nx * (frame.X + a[0] - x) + ny * (frame.Y + a[1] - y))
 
-    def vanish(self, row: int, multiplier: float) -> None:
-        """Let the multiplier of an inactive row vanish."""
-        self.forces.append((row, multiplier))
-        self.entries.append((row, row, 1.0))
-
     def collected(self, size: int) -> tuple[Array, Single]:
         """The forces (size,) and the entries."""
         unknowns, forces = np.array(self.forces).reshape(-1, 2).T
@@ -95,24 +90,26 @@ class _Sums:
 def rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Single]:
     """Residual (size,) and tangent of all rigid parts."""
     sums, frames = _Sums(), [_Frame(body, z) for body in model.bodies]
-    ways: dict[int, list[float]] = {}
-    if acting.ways is not None and model.apart:
-        share = 1.0 - values[model.stepped.index(WAY)]
-        ways = {
-            int(end.joint.rows[0]): (share * way).tolist() for end, way in zip(model.apart, acting.ways, strict=True)
-        }
+    ends = () if acting.ways is None else zip(model.apart, acting.ways, strict=True)
+    ways = {int(end.joint.rows[0]): (1.0 - values[model.stepped.index(WAY)]) * way for end, way in ends}
+    inactive = [row for joint in model.joints if model.free(joint, acting) for row in joint.rows.tolist()]
+    inactive += [stop.row for stop in model.stops if stop.name not in acting.limits]
+    sums.forces += [(row, z.values.item(row)) for row in inactive]  # their multipliers vanish
+    sums.entries += [(row, row, 1.0) for row in inactive]
     for joint in model.joints:
-        if model.free(joint, acting):
-            for row in joint.rows.tolist():
-                sums.vanish(row, z.values.item(row))
-        else:
-            _join(sums, joint, frames[joint.body], z, ways.get(int(joint.rows[0]), (0.0, 0.0)))
+        if not model.free(joint, acting):
+            _join(sums, joint, frames[joint.body], z, ways.get(int(joint.rows[0]), np.zeros(2)).tolist())
     for hinge in model.hinges:
         for i, r, sign in zip(hinge.bodies, hinge.arms, (1.0, -1.0), strict=True):
-            frame, rows = frames[i], hinge.rows.tolist()
-            a = frame.turned(r)
+            frame, a = frames[i], frames[i].turned(r)
             for row, n, c, X, own, rest in zip(
-                rows, ((sign, 0.0), (0.0, sign)), frame.centre, (frame.X, frame.Y), a, frame.rest, strict=True
+                hinge.rows.tolist(),
+                ((sign, 0.0), (0.0, sign)),
+                frame.centre,
+                (frame.X, frame.Y),
+                a,
+                frame.rest,
+                strict=True,
             ):
                 sums.forces.append((row, sign * (c + X + own) + sign * rest))
                 sums.hold(row, z.values.item(row), frame, n, a)
@@ -120,19 +117,14 @@ def rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array,
     for part, value in zip((*model.guides, *model.drives), (*[0.0] * len(model.guides), *prescribed), strict=True):
         motion = sums.guide(part.row, z.values.item(part.row), part, frames[part.body])
         sums.forces.append((part.row, motion - value))
-    if model.apart:
-        moments = float(values[model.stepped.index(MOMENTS)])
-        for end in model.apart:
-            sums.forces.append((int(end.joint.dofs[2]), -moments * end.moment))
+    for end in model.apart:
+        sums.forces.append((int(end.joint.dofs[2]), -float(values[model.stepped.index(MOMENTS)]) * end.moment))
     for stop, limit in acting_stops(model.stops, acting):
         multiplier = z.values.item(stop.row)
         sums.forces.append((stop.row, stop.angle(z) - limit))
         sums.link(stop.row, multiplier, stop.theta, 1.0)
         if stop.phi is not None:
             sums.link(stop.row, multiplier, stop.phi, -1.0)
-    for stop in model.stops:
-        if stop.name not in acting.limits:
-            sums.vanish(stop.row, z.values.item(stop.row))
     for load, value in zip(model.loads, values.tolist(), strict=False):
         if isinstance(load, LoadPart) and frames[load.body].dofs:
             sums.guide(None, -value, load, frames[load.body])

@@ -16,11 +16,15 @@ With the relative motion of the point against the body, δu = δx − δX − δ
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 
 from cprbm_scene.answer import Array
+from cprbm_scene.statement import CircleContact, EdgeContact
+from fea_reference.edge import Edge, edge_of
 from fea_reference.hermite import (
     Index,
     NeutralLine,
@@ -33,6 +37,33 @@ from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Penalty, Places, Rigid, Touch, count_points_per_place
 from fea_reference.zones import Zones
+
+LAYERS = 32.0
+"""Layers per beam length, for the first penalty."""
+
+_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
+# Layers per beam length at the standard penetration: their error is below 1e-7, while thinner layers amplify the
+# round-off of a clamp's place. Penetration goes with the fourth power of the layer, so that a smaller requested
+# penetration has thinner layers.
+_THINNEST, _STANDARD = 800.0, 1e-4
+C = TypeVar("C", CircleContact, EdgeContact)
+
+
+def on_bodies(
+    model: Model, contacts: Mapping[str, C], penetration: float
+) -> Iterator[tuple[str, C, int, int, Edge, float, float]]:
+    """Name, record, numbers of beam and body, edge, element's length and stiffest penalty of ``contacts`` with bodies.
+
+    The ``penetration`` is the requested one of the settings.
+    """
+    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
+    beams, bodies = [beam.name for beam in model.beams], [body.name for body in model.bodies]
+    for name, contact in contacts.items():
+        first, body = beams.index(contact.beam), bodies.index(contact.body)
+        beam = model.beams[first]
+        edge = edge_of(beam.record, beam.elements.stop - beam.elements.start, model.units.length, thick=contact.thick)
+        h = float(model.elements.length[beam.elements.start])
+        yield name, contact, first, body, edge, h, beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4
 
 
 def rigid_touch(

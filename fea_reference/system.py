@@ -186,7 +186,7 @@ def _assembled(
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
 
     def tangent() -> csc_matrix:
-        entries: list[Block | Single] = [rigid_entries, Block(model.element_dofs, elements.hessian)]
+        entries: list[Block | Single] = [rigid_entries, Block(model.element_dofs, elements.hessian())]
         for contact, _ in pressing:
             entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
         entries += [Block(load.dofs, -load.hessian) for load in loads]

@@ -102,8 +102,7 @@ class Survey:
             new = np.array([where, np.zeros_like(where), guess])
             (zeta, g, zeta_m), neighbours = _with_columns(np.array([zeta, g, zeta_m]), neighbours, ends, new)
         here, there_next = g[:-1], g[1:]
-        negative_parts = neighbours & (np.maximum(here, there_next) <= 0.0) & (here + there_next < 0.0)
-        inside = negative_parts.nonzero()[0]
+        inside = (neighbours & (np.maximum(here, there_next) <= 0.0) & (here + there_next < 0.0)).nonzero()[0]
         if not inside.size:
             return no_zones(self.least)
         # The gap is smooth within an element, so that adjacent parts form a single interval.
@@ -169,11 +168,9 @@ def gap(
     d = (back * line_difference(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
-    Z = J * J - d * a
-    if (fixed := faced.fixed) is None:
-        bend = -a / Z
-    else:
-        bend = np.where(fixed, 1.0 / np.where(d == 0.0, 1.0, d), -a / np.where(fixed, 1.0, Z))
+    bend = -a / (J * J - d * a if faced.fixed is None else np.where(faced.fixed, 1.0, J * J - d * a))
+    if faced.fixed is not None:
+        bend = np.where(faced.fixed, 1.0 / np.where(d == 0.0, 1.0, d), bend)
     curvature = (back * there.bent).real + bend * ahead.imag**2
     side = sides(zeta, zeta_m, d)
     g, slope = side * d - T, side * ahead.real
@@ -455,13 +452,12 @@ def _roots(
     """Places between ``left`` and the next with a gap of ``level`` or, without a level, a zero slope; and their ζ_m.
 
     ``values`` change sign there. Newton's method, safeguarded by bisection, starts at the ``share`` of the interval.
-    If a value times the bracket is below ``floor``, the integral of the function does not
-    change any more and any place is a root: slopes of beams that lie on a surface are pure round-off.
+    If a value times the bracket is below ``floor``, the integral of the function does not change any more and any
+    place is a root: slopes of beams that lie on a surface are pure round-off.
 
     For a level a step leads to the zero of the osculating parabola. The difference from the Newton step then bounds
     the error.
     """
-    arrived = _TURNS if level is None else _ARRIVED
     low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
     guess = zeta_m[left] + share * (zeta_m[left + 1] - zeta_m[left])
@@ -475,14 +471,14 @@ def _roots(
         below = f * rising < 0.0
         np.copyto(low, x, where=below)
         np.copyto(high, x, where=~below)
-        flat = df == 0.0
-        newton_step = -f / np.where(flat, 1.0, df)
+        df = np.where(df == 0.0, np.nan, df)  # no Newton step where the function is flat
+        newton_step = -f / df
         newton = x + newton_step
         if level is not None:
             correction = _to_parabola(newton_step, df, curvature)
             newton += correction
         # a step out of the bracket by round-off has converged; bisection would restart from afar
-        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
+        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED)
         moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
         step = moved - x
         step[np.abs(f) * (high - low) <= floor] = 0.0
@@ -491,11 +487,11 @@ def _roots(
         if level is not None:
             size = np.where(good & (size < _SHORT) & (correction != 0.0), np.minimum(size, np.abs(correction)), size)
         # the error of the last step is of second or third order
-        going = size >= np.where(good, arrived, _ARRIVED)
+        going = size >= (np.where(good, _TURNS, _ARRIVED) if level is None else _ARRIVED)
         places[sought], closest_there[sought] = x, guess
-        if not going.any():
+        if not (count := np.count_nonzero(going)):
             break
-        if not going.all():
+        if count < going.size:
             sought = sought[going]
             low, high, x, guess, rising, pace = (array[going] for array in (low, high, x, guess, rising, pace))
     return places, closest_there
@@ -503,7 +499,7 @@ def _roots(
 
 def _to_parabola(newton_step: Array, slope: Array, bend: Array) -> Array:
     """Difference between the nearer zero of a parabola and the ``newton_step`` (k,); zero if it is not small."""
-    under = 1.0 + 2.0 * newton_step * bend / np.where(slope == 0.0, np.inf, slope)
+    under = 1.0 + 2.0 * newton_step * bend / slope
     return np.asarray(
         np.where(under > _BENT, newton_step * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0)
     )

@@ -49,7 +49,7 @@ def test_the_elements_derivatives(hinge, kinematics):
         step[i] = h
         ahead, behind = at_values(u + step), at_values(u - step)
         slope = (ahead.gradient - behind.gradient) / (2 * h)
-        assert at.hessian[i] == pytest.approx(slope, abs=1e-6 * np.abs(at.hessian).max())
+        assert at.hessian()[i] == pytest.approx(slope, abs=1e-6 * np.abs(at.hessian()).max())
         # Π = strain energy + N ∂Π/∂N, because ∂Π/∂N is the membrane gap and c L N² is counted once too often
         # in it
         value = [side.energy + v[6] * side.gradient[6] for side, v in ((ahead, u + step), (behind, u - step))]
