@@ -233,8 +233,8 @@ def _directions(model: Model, system: System, K: csc_matrix) -> tuple[Index, Ind
     couplings = [(dof, dof, 1.0) for dof in of_bodies]
     moved = list(of_bodies)
     if moved:
-        for (dof, _), line in zip(row_of.items(), _lines(K, list(row_of.values()))[:, moved], strict=True):
-            couplings += [(dof, moved[i], -float(line[i])) for i in np.flatnonzero(line)]
+        held, lines = list(row_of), _lines(K, list(row_of.values()))[:, moved]
+        couplings += [(held[i], moved[j], -float(lines[i, j])) for i, j in np.argwhere(lines).tolist()]
     for dof, other, value in couplings:
         here, line = of_bodies[other]
         rows.append(np.full(here.size, dof))

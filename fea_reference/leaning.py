@@ -29,7 +29,6 @@ import numpy as np
 from cprbm_scene.answer import Array
 from fea_reference.element import Chords
 from fea_reference.hermite import Index
-from fea_reference.state import State
 
 _LINE = 7  # unknowns of an element's line
 TANGENTS = (2, 5)
@@ -49,9 +48,8 @@ class Span:
     slips: bool
 
 
-def tangent_angles(span: Span, shear: Array, z: State) -> Array:
-    """ψ (n+1,) of a beam with shear angles ``shear`` (n,)."""
-    theta: Array = z.values[np.append(span.dofs[2], span.dofs[5, -1])]
+def tangent_angles(span: Span, theta: Array, shear: Array) -> Array:
+    """ψ (n+1,) of a beam with rotations ``theta`` (n+1,) and shear angles ``shear`` (n,)."""
     if not span.slips:
         return theta
     start, end = (0.0 if welded else 1.0 for welded in span.welded)

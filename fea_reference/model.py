@@ -299,7 +299,8 @@ class Model:
         return self.known.recall(z, ("line", beam.name), lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
-        return self._through(beam, tangent_angles(self.spans[beam.name], self.chords(z).shear[beam.elements], z), z)
+        theta = z.values[self.node_dofs[2, beam.nodes]]
+        return self._through(beam, tangent_angles(self.spans[beam.name], theta, self.chords(z).shear[beam.elements]), z)
 
     def line_of_sections(self, beam: BeamPart, z: State) -> NeutralLine:
         """The neutral line with the sections' rotations as tangents, without the shear angle."""

@@ -246,8 +246,8 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
         lengths = h
     else:
         lengths = 1.0 if isinstance(pair.outline, Graph) else h + pair.edge.farthest
-    widest = h * float(np.diff(touch.zones.intervals, axis=1).max(initial=0.0))
-    return float(np.finfo(float).eps) * stiffness * widest * lengths
+    widest = h * float((touch.zones.intervals[:, 1] - touch.zones.intervals[:, 0]).max(initial=0.0))
+    return 2.0**-52 * stiffness * widest * lengths
 
 
 def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:

@@ -248,7 +248,7 @@ def survey_pair(
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
-    zeta = np.unique(np.clip(zeta, *free))
+    zeta = zeta if free == (0.0, np.inf) else np.unique(np.clip(zeta, *free))
     x = first.around(zeta)
     distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[nodes_second])
     near = np.flatnonzero(distance < reach)
