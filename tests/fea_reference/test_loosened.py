@@ -3,8 +3,11 @@
 The hump's penalty is loosened to look for its zone, with which the other contact presses at once.
 """
 
+import pytest
+
 from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
+from tests.cprbm.test_leaf_stack import leaves
 
 
 def hump():
@@ -69,3 +72,12 @@ def test_a_search_with_loose_penalties_begins_where_it_goes_on():
     assert found.ending is Ending.COMPLETED, found.sentence
     assert found.stations[0].values["meets.force"][0] == 0.0
     assert found.stations[1].values["meets.force"][0] > 0.0
+
+
+def test_leaves_of_unequal_thickness_share_the_load():
+    # quadratic programme of three Euler-Bernoulli leaves, E = 200 GPa: 1.2912 mm/N, forces of 0.4814 and 0.1651 F
+    solved = answer(leaves(0.0, (200.0, 160.0, 120.0), (1.0,), (1.6, 1.2, 0.8)), Settings(elements=40))
+    assert solved.completed, solved.sentence
+    values = solved.stations[-1].values
+    assert values["T.displacement"][1] == pytest.approx(1.2912e-3, rel=1e-3)
+    assert [values[f"c{k}.force"][0] for k in range(2)] == pytest.approx([0.4814, 0.1651], rel=1e-3)
