@@ -21,10 +21,11 @@ RESTING = 1e-6
 LEANING = 1e-9
 """Least change of the thickness's slope at a corner: round-off."""
 
-FLATTEST = 0.5
-"""Least turn of two curves against each other over a link at a point of contact, over the cubed turn of two links.
+ALIKE, SPLINED = 1e-4, 1 / 64
+"""Turn of two curves against each other over a link, over the turn t of two links and over t³: least of a point.
 
-The spline of links that turn by τ leaves the direction of an arc by τ³/12: the gap of nested arcs has such minima.
+Flatter minima of the gap are no points of contact.  The spline of links that turn by τ leaves the direction of an arc
+by τ³/12: the gap of nested arcs has a minimum in most links.
 """
 
 WITHIN = 0.5
@@ -82,7 +83,8 @@ def points_at(
     ends = curves.first[points.curve, None], curves.last[points.curve, None]
     near = np.clip(pieces[:, None] + np.array([-1, 0, 1]), *ends)
     leans, turns = np.ptp(curves.thickening[near] / curves.span[near], axis=1), np.ptp(z[curves.angle[near]], axis=1)
-    missing |= (moved & (leans > LEANING)) | (curvatures * curves.span[pieces] < FLATTEST * turns**3)
+    missing |= curvatures * curves.span[pieces] < turns * np.maximum(ALIKE, SPLINED * turns**2)
+    missing |= moved & (leans > LEANING)
     gaps[missing], curvatures[missing] = np.inf, 0.0
     return points, gaps, curvatures
 
