@@ -91,7 +91,7 @@ _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of 
 _LYING = 1.0  # elements: least length of a zone at an end with a resting pressure
 _LINE = 7  # unknowns of an element's line
 _WEIGHTLESS = 1e-6  # least share of the force of all zones
-_LAYERS = 32.0  # layers per beam length, for the widest layer
+_LAYERS = 10.0  # layers per beam length, for the widest layer
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:

@@ -806,7 +806,12 @@ class March:
                 self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known
             )
             solved = self._equilibrium(tighter, self.values, z, held_depths, pushes)
-            near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
+            # under a soft contact a strut is straight: a stiffer contact must not jump over the bent states
+            near = (
+                solved.converged
+                and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
+                and (all_positive(self.model, solved.system) or not self.is_minimum)
+            )
             if near and not self._passed_rigid_body(solved.system):
                 falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
