@@ -155,7 +155,7 @@ def at_station(scene: Scene, stage: str, value: float) -> str:
 def in_file_units(scene: Scene, answer: Answer) -> Answer:
     """An answer whose sentence and notes have the displayed units of the loads and drives that stages step."""
     stages = {stage.steps: stage.name for stage in scene.stages}
-    value = re.compile(rf"\b({'|'.join(map(re.escape, stages))}) (=|is) ([-+]?\d[\d.]*(?:e[-+]\d+)?)\b")
+    value = re.compile(rf"\b({'|'.join(map(re.escape, stages))}) (=|is|comes to) ([-+]?\d[\d.]*(?:e[-+]\d+)?)\b")
     sentence, *notes = (
         value.sub(lambda found: f"{found[1]} {found[2]} {load_text(scene, stages[found[1]], float(found[3]))}", text)
         for text in (answer.sentence, *answer.notes)

@@ -56,7 +56,7 @@ class MechanismComparison(case.Comparison):
         write(Path(path), csv_of_comparisons([self]))
 
     def to_pandas(self) -> Any:  # noqa: ANN401 - pandas is no dependency
-        """The rows of :meth:`to_csv` as a ``pandas.DataFrame``.
+        """The rows of :meth:`to_csv` in SI, as a ``pandas.DataFrame``.
 
         Raises:
             ImportError: pandas is not installed.
@@ -133,7 +133,7 @@ class Mechanism:
         write(Path(path), csv_of(self.scene, self.solve(solver, choices)))
 
     def to_pandas(self, solver: SolverName = "cprbm", choices: Choices | None = None) -> Any:  # noqa: ANN401
-        """The rows of :meth:`to_csv` as a ``pandas.DataFrame``.
+        """The rows of :meth:`to_csv` in SI, as a ``pandas.DataFrame``.
 
         Raises:
             SceneError: the solver refuses the scene.

@@ -71,10 +71,10 @@ from cprbm_scene.units import (
 
 T = TypeVar("T")
 
-_LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
-Word = Annotated[str, StringConstraints(pattern=f"^[{_LETTERS}][{_LETTERS}0-9-]*$", max_length=64)]
+LETTERS = "A-Za-z_À-ÖØ-öø-ɏΑ-Ωα-ω"
+Word = Annotated[str, StringConstraints(pattern=f"^[{LETTERS}][{LETTERS}0-9-]*$", max_length=64)]
 """Latin and Greek letters, digits, '_' and '-': the name of a parameter in an expression."""
-NAME = f"^[{_LETTERS}][{_LETTERS}0-9-]*( [{_LETTERS}0-9-]+)*$"
+NAME = f"^[{LETTERS}][{LETTERS}0-9-]*( [{LETTERS}0-9-]+)*$"
 """Pattern of words with a single space between words: names are parts of keys, of file names and of options."""
 Name = Annotated[str, StringConstraints(pattern=NAME, max_length=64)]
 Text = Annotated[str, StringConstraints(pattern=r"^[^\x00-\x08\x0b-\x1f\x7f-\x9f]*$")]
@@ -131,11 +131,11 @@ class Units(Record):
 
     length: Literal["m", "cm", "mm", "um", "in"] = "m"
     """Unit of lengths."""
-    force: Literal["N", "kN", "mN", "uN"] = "N"
+    force: Literal["N", "kN", "mN", "uN", "lbf"] = "N"
     """Unit of forces."""
     angle: Literal["rad", "deg"] = "rad"
     """Unit of angles."""
-    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
+    stress: Literal["Pa", "kPa", "MPa", "GPa", "psi"] = "Pa"
     """Unit of moduli and of stresses in claims."""
 
 
@@ -323,7 +323,7 @@ class Reading:
             and Mistake(
                 name,
                 repr(given.value if setting is None else setting),
-                f"a finite number in {given.unit or 'no unit'}, such as 1.9{given.unit}",
+                f"a finite number, as 1.9{given.unit}",
             )
         )
         return Value(float(Fraction(repr(number)) * Fraction(repr(size))), unit if given.unit else None)

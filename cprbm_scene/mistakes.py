@@ -156,8 +156,8 @@ _ALLOWED = {
     "greater_than_equal": "a number of at least {ge:g}",
     "less_than": "a number less than {lt:g}",
     "less_than_equal": "a number of at most {le:g}",
-    "too_short": "at least {min_length} of them",
-    "too_long": "at most {max_length} of them",
+    "too_short": "at least {min_length} items",
+    "too_long": "at most {max_length} items",
     "string_too_long": "at most {max_length} characters",
     "literal_error": "one of {expected}",
 }

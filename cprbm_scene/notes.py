@@ -41,8 +41,7 @@ def notes(scene: Scene) -> Iterator[str]:
     boxes = {name: _box(beam) for name, beam in scene.beams.items()}
     for first, second in combinations(scene.beams, 2):
         beside = any(np.any(boxes[one][0] > boxes[other][1]) for one, other in ((first, second), (second, first)))
-        meeting = "" if beside or {first, second} in known else _meeting(scene, first, second)
-        if meeting:
+        if not beside and {first, second} not in known and (meeting := _meeting(scene, first, second)):
             yield (
                 f"beams.{second}: {meeting}: without a contact of the two, no force acts there; a pair in may_cross "
                 "needs no note."

@@ -70,9 +70,9 @@ def toml_data(path: str | Path) -> dict[str, Any]:
     Raises:
         SceneError: the file cannot be read, is too large or too deep, or is no TOML.
     """
-    readable = "a readable TOML file in UTF-8"
+    readable = "TOML in UTF-8: numbers with a decimal point; texts, and names with spaces or accents, in quotes"
     try:
-        text = text_of(path, "TOML", readable)
+        text = text_of(path, readable)
         refuse_broken(
             _DEEP_KEY.search(text) and Mistake("", f"a key of more than {DEEPEST} parts", "the keys of a scene")
         )

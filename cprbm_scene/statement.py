@@ -285,6 +285,8 @@ class Scene(Record):
         """Name, and numbers of beams, contacts and probes."""
         return f"<Scene {self.name}: {len(self.beams)} beams, {len(self.contacts)} contacts, {len(self.probes)} probes>"
 
+    __str__ = __repr__
+
     @property
     def display_units(self) -> Units:
         """Units of the scene's file, for tables and figures; ``model_fields_set`` lists the stated ones."""

@@ -9,7 +9,6 @@ comment that begin with ``#``.  Columns are separated by commas, semicolons or t
 """
 
 import ast
-import csv
 import math
 import operator
 import re
@@ -32,9 +31,21 @@ BY_QUANTITY: Mapping[str, Mapping[str, Fraction]] = {
         "um": Fraction("1e-6"),
         "in": Fraction("0.0254"),
     },
-    "force": {"N": Fraction(1), "kN": Fraction(10**3), "mN": Fraction(1, 10**3), "uN": Fraction(1, 10**6)},
+    "force": {
+        "N": Fraction(1),
+        "kN": Fraction(10**3),
+        "mN": Fraction(1, 10**3),
+        "uN": Fraction(1, 10**6),
+        "lbf": Fraction("4.4482216152605"),
+    },
     "angle": {"rad": Fraction(1), "deg": Fraction(math.pi / 180.0)},
-    "stress": {"Pa": Fraction(1), "kPa": Fraction(10**3), "MPa": Fraction(10**6), "GPa": Fraction(10**9)},
+    "stress": {
+        "Pa": Fraction(1),
+        "kPa": Fraction(10**3),
+        "MPa": Fraction(10**6),
+        "GPa": Fraction(10**9),
+        "psi": Fraction("4.4482216152605") / Fraction("0.0254") ** 2,
+    },
 }
 """Sizes of units in SI, by the quantities of :class:`Unit`."""
 SIZES: Mapping[str, Fraction] = {name: size for sizes in BY_QUANTITY.values() for name, size in sizes.items()}
@@ -66,8 +77,11 @@ class Unit(NamedTuple):
         return float(Fraction(repr(value)) * size) if size != 1 and math.isfinite(value) else value
 
     def __str__(self) -> str:
-        named = zip(("m", "N", "rad", "Pa"), self, strict=True)
-        return "*".join(f"{name}**{power}" if power != 1 else name for name, power in named if power)
+        return "*".join(
+            f"{name}**{power}" if power != 1 else name
+            for name, power in zip(("m", "N", "rad", "Pa"), self, strict=True)
+            if power
+        )
 
 
 NUMBER = Unit()
@@ -178,21 +192,25 @@ def evaluated(text: str, named: Callable[[str], Value], units: FileUnits) -> Val
         match node:
             case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
                 return Value(float(number))
-            case ast.Name(id=marked):
-                return Value(math.pi) if marked == "pi_" else named(marked[:-1])
+            case ast.Name(id=name):
+                return Value(math.pi) if name == "pi" else named(name)
             case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
                 return _product(operator.mul, [Value(-1.0 if isinstance(sign, ast.USub) else 1.0), of(operand)], units)
             case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _SIGNS:
-                return of(ast.Call(ast.Name(_SIGNS[type(sign)] + "_"), [left, right], []))
-            case ast.Call(func=ast.Name(id=marked), args=nodes, keywords=[]) if marked[:-1] in _RULES:
-                function, rule, count = _RULES[marked[:-1]]
-                _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{marked[:-1]} of {len(nodes)} numbers")
+                return of(ast.Call(ast.Name(_SIGNS[type(sign)]), [left, right], []))
+            case ast.Call(func=ast.Name(id=name), args=nodes, keywords=[]) if name in _RULES:
+                function, rule, count = _RULES[name]
+                _refuse(len(nodes) != (count or max(len(nodes), 1)), f"{name} of {len(nodes)} numbers")
                 return rule(function, [of(each) for each in nodes], units)
-        raise ExpressionError(repr(re.sub(r"_\b", "", ast.unparse(node))) + ", which is no arithmetic")
+        raise ExpressionError(f"{ast.unparse(node)!r}, which is no arithmetic")
 
     try:
-        # names get a mark: the unit 'in' and a parameter 'lambda' are words of Python
-        value = of(ast.parse(re.sub(r"(?<![\w.])[^\W\d]\w*", r"\g<0>_", text.strip()), mode="eval").body)
+        # Python reads a name with a letter of full width as the plain name, but as no keyword: 'in' is a unit
+        value = of(
+            ast.parse(
+                re.sub(r"(?<![\w.])[A-Za-z]", lambda letter: chr(0xFEE0 + ord(letter[0])), text.strip()), mode="eval"
+            ).body
+        )
     except SyntaxError:
         raise ExpressionError("no arithmetic") from None
     except SceneError:
@@ -228,25 +246,24 @@ def unit_of(text: str, key: str) -> tuple[float, Unit]:
 LONGEST = 1_000_000
 """Largest size of a file in bytes: a hundred times the longest built-in case."""
 _COLUMN = re.compile(r"\s*([xy])\s*(?:[\[(/_]?\s*(?:in\s)?\s*(mm|cm|um|µm|m|in)\s*[\])]?)?\s*", re.IGNORECASE)
-_HEADER = "a header with the columns x and y, such as 'x [mm], y [mm]'; units are m, cm, mm, um and in"
 
 
-def text_of(path: str | Path, content: str, readable: str, name: str = "") -> str:
+def text_of(path: str | Path, readable: str, name: str = "", most: int = LONGEST) -> str:
     """Text of a file in UTF-8, with or without a byte-order mark.
 
     Args:
         path: the file.
-        content: contents of the file, for the message on a file that is larger than :data:`LONGEST`.
-        readable: description of a readable file, for the other messages.
+        readable: description of a readable file, for the messages.
         name: begin of the found values in the messages.
+        most: largest size in bytes.
 
     Raises:
         SceneError: the file cannot be read, or is too large.
     """
     try:
         with Path(path).open("rb") as stream:
-            found = stream.read(LONGEST + 1)
-        if len(found) <= LONGEST:
+            found = stream.read(most + 1)
+        if len(found) <= most:
             return found.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise mistake(f"{name}bytes that are no UTF-8 text (at byte {error.start})", readable) from None
@@ -254,7 +271,18 @@ def text_of(path: str | Path, content: str, readable: str, name: str = "") -> st
         raise mistake(
             f"{name}a file that cannot be read ({getattr(error, 'strerror', None) or error})", readable
         ) from None
-    raise mistake(f"{name}a file that is larger", f"at most {LONGEST // 1_000_000} MB of {content} in UTF-8")
+    raise mistake(f"{name}a file that is larger", f"{readable}, at most {most // 1_000_000} MB")
+
+
+def rows_of(text: str) -> list[tuple[int, list[str]]]:
+    """Numbers and cells of the rows of a table, whose first row decides on the separator."""
+    lines = [
+        (row, line)
+        for row, line in enumerate(text.splitlines(), start=1)
+        if line.strip(" \t,;#") and not line.lstrip().startswith("#")
+    ]
+    mark = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
+    return [(row, [cell.strip("\"' \t") for cell in line.split(mark)]) for row, line in lines]
 
 
 def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
@@ -268,31 +296,30 @@ def read_points(path: Path, unit: str) -> tuple[tuple[float, float], ...]:
         SceneError: the file cannot be read, or has a wrong header or number; the error names file, row and
             column.
     """
-    text = text_of(
-        path, "points", "a table of points in UTF-8, with a path from the scene's folder", f"{str(path)!r}, "
-    )
-    (first, header), *lines = [
-        (row, line)
-        for row, line in enumerate(text.splitlines(), start=1)
-        if line.strip(" \t,;#") and not line.lstrip().startswith("#")
-    ] or [(1, "")]
-    mark = next((mark for mark in ";\t" if mark in header), ",")
+    text = text_of(path, "a table of points in UTF-8, with a path from the scene's folder", f"{str(path)!r}, ")
+    (first, header), *rows = rows_of(text) or [(1, [""])]
     columns = {
         name[1].lower(): (i, (name[2] or unit).lower().replace("µ", "u"))
-        for i, title in enumerate(header.split(mark))
-        if (name := _COLUMN.fullmatch(title.strip("\"' ")))
+        for i, title in enumerate(header)
+        if (name := _COLUMN.fullmatch(title))
     }
-    refuse_broken(set(columns) != {"x", "y"} and Mistake("", f"{header[:80]!r} in {path.name}, row {first}", _HEADER))
+    refuse_broken(
+        set(columns) != {"x", "y"}
+        and Mistake(
+            "",
+            f"{','.join(header)[:80]!r} in {path.name}, row {first}",
+            "a header with the columns x and y, such as 'x [mm], y [mm]'; units are m, cm, mm, um and in",
+        )
+    )
     return tuple(
         (_number(path, row, cells, "x", *columns["x"], unit), _number(path, row, cells, "y", *columns["y"], unit))
-        for row, line in lines
-        for cells in csv.reader([line], delimiter=mark)
+        for row, cells in rows
     )
 
 
 def _number(path: Path, row: int, cells: list[str], name: str, column: int, own: str, unit: str) -> float:
     """Number of a cell in a unit of length."""
-    cell = cells[column].strip() if column < len(cells) else ""
+    cell = cells[column] if column < len(cells) else ""
     with suppress(ValueError):
         if abs(number := float(cell)) <= LARGEST:
             return number if own == unit else float(Fraction(repr(number)) * SIZES[own] / SIZES[unit])

@@ -1,4 +1,4 @@
-"""Formulas as MathML: browsers draw MathML without scripts and without a network."""
+"""Formulas as MathML, which browsers draw without scripts and without a network, and percentages on one line."""
 
 from __future__ import annotations
 
@@ -18,6 +18,13 @@ _TAG = re.compile(r"\\tag\{([^}]*)\}")
 def setup(app: Sphinx) -> None:
     """Register the renderer of formulas with the name ``mathml``."""
     app.add_html_math_renderer("mathml", inline_renderers=(_inline, None), block_renderers=(_block, None))
+    app.connect("doctree-resolved", _percentages)
+
+
+def _percentages(app: Sphinx, document: nodes.document, name: str) -> None:
+    for text in document.findall(nodes.Text):
+        if " %" in text and not isinstance(text.parent, nodes.literal_block):
+            text.parent.replace(text, nodes.Text(text.replace(" %", "\N{NO-BREAK SPACE}%")))
 
 
 def _inline(page: HTML5Translator, formula: nodes.math) -> None:

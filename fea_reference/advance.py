@@ -15,34 +15,24 @@ leaves a smooth residual.
 
 import numpy as np
 
-from cprbm_scene.answer import Array, Ints
+from cprbm_scene.answer import Array
 from fea_reference.model import Model
 from fea_reference.state import State
 
 
 def advance(model: Model, z: State, step: Array) -> State:
     """State ``z`` moved by ``step`` (size,)."""
-    motion = step.copy()
-    for beam in model.beams:
-        dofs = model.node_dofs[:2, beam.nodes]
-        dx, dy, turn, stretch = _chords(dofs, z, step)
-        # change of every chord without cancellation: (1 + stretch) R(turn) minus the identity
-        along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
-        changes = np.array([along * dx - across * dy, across * dx + along * dy])
-        motion[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return z.moved(motion)
+    dx, dy, turn, stretch = _chords(model, z, step)
+    # change of every chord without cancellation: (1 + stretch) R(turn) minus the identity
+    along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
+    return z.moved(_joined(model, step, np.array([along * dx - across * dy, across * dx + along * dy])))
 
 
 def transported(model: Model, before: State, now: State, rate: Array) -> Array:
     """Vector ``rate`` (size,) of the state ``before``, transported to ``now``: equal turn and stretch of the chords."""
-    same = rate.copy()
-    for beam in model.beams:
-        dofs = model.node_dofs[:2, beam.nodes]
-        _, _, turn, stretch = _chords(dofs, before, rate)
-        dx, dy = now.difference(dofs[:, 1:], dofs[:, :-1])
-        changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-        same[dofs[:, 1:]] = rate[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return same
+    _, _, turn, stretch = _chords(model, before, rate)
+    dx, dy = now.difference(model.element_dofs[3:5], model.element_dofs[:2])
+    return _joined(model, rate, np.array([stretch * dx - turn * dy, turn * dx + stretch * dy]))
 
 
 def path_terms(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
@@ -59,21 +49,26 @@ def path_terms(model: Model, before: State, now: State, rates: tuple[Array, Arra
 
 def step_between(model: Model, start: State, end: State) -> Array:
     """The step (size,) from ``start`` to ``end``, inverse of :func:`advance`."""
-    step = (end.values - start.values) + (end.rest - start.rest)
-    for beam in model.beams:
-        dofs = model.node_dofs[:2, beam.nodes]
-        dx, dy = start.difference(dofs[:, 1:], dofs[:, :-1])
-        along, across = end.difference(dofs[:, 1:], dofs[:, :-1])
-        ratio = (along + 1j * across) / (dx + 1j * dy)
-        turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
-        changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
-        step[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
-    return step
+    ends = model.element_dofs[3:5], model.element_dofs[:2]
+    (dx, dy), (along, across) = start.difference(*ends), end.difference(*ends)
+    ratio = (along + 1j * across) / (dx + 1j * dy)
+    turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
+    moved = (end.values - start.values) + (end.rest - start.rest)
+    return _joined(model, moved, np.array([stretch * dx - turn * dy, turn * dx + stretch * dy]))
 
 
-def _chords(dofs: Ints, z: State, step: Array) -> tuple[Array, Array, Array, Array]:
-    """Chord components (n,) along x and y of a beam's nodes ``dofs`` (2, n + 1), and their turn and stretch."""
-    dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])
-    step_x, step_y = np.diff(step[dofs], axis=1)
+def _chords(model: Model, z: State, step: Array) -> tuple[Array, Array, Array, Array]:
+    """Chord components (n,) along x and y of all elements, and their turn and stretch in a ``step`` (size,)."""
+    last, first = model.element_dofs[3:5], model.element_dofs[:2]
+    (dx, dy), (step_x, step_y) = z.difference(last, first), step[last] - step[first]
     square = dx * dx + dy * dy
     return dx, dy, (dx * step_y - dy * step_x) / square, (dx * step_x + dy * step_y) / square
+
+
+def _joined(model: Model, step: Array, changes: Array) -> Array:
+    """The ``step`` (size,) with the ``changes`` (2, n) of all chords, joined from the beams' starts."""
+    joined = step.copy()
+    for beam in model.beams:
+        dofs = model.node_dofs[:2, beam.nodes]
+        joined[dofs[:, 1:]] = step[dofs[:, :1]] + changes[:, beam.elements].cumsum(axis=1)
+    return joined

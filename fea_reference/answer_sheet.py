@@ -41,9 +41,9 @@ def beam_states(march: March) -> dict[str, BeamState]:
 
 
 def point_forces(scene: Scene, march: March) -> PointForces:
-    """All forces except the loads."""
+    """All forces except the loads; without a significant force a contact's force is a penalty times round-off."""
     rows = [*_at_joints(march), *_on_bodies(scene, march), *_at_stops(march)]
-    rows += [row for touch in march.system.touches for row in _at_contact(march, touch)]
+    rows += [row for touch in march.system.touches if march.system.significant for row in _at_contact(march, touch)]
     units = march.model.units
     return PointForces.collected(rows, units.length, units.force, tuple(units.origin))
 

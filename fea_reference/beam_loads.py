@@ -113,7 +113,7 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
     force = value * part.forces
     placed = _load_places(model, part, z)
     place = placed.place
-    start = model.loaded.recall(model.start, part.name, lambda: _load_places(model, part, model.start).place)
+    start = model.known.recall(model.start, ("load", part.name), lambda: _load_places(model, part, model.start).place)
     local, twice = placed.projected_gradient(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
@@ -131,12 +131,12 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     e, xi = sections.locate(zeta)
     theta, local, twice = _section_angle(sections, zeta)
     bow = 6.0 * xi * (1.0 - xi)
-    gamma, leaning = model.sheared(beam, e, z)
-    theta = theta - bow * gamma
-    local[:6] -= bow * leaning.by
-    twice[:6, :6] -= bow * leaning.by_twice
-    rest, give = model.loaded.recall(model.start, part.name, lambda: _moment_at_rest(model, part))
-    chain = model.chain_of_sections(beam, e)
+    chords, at = model.chords(z), beam.elements.start + e
+    theta = theta - bow * chords.shear[at]
+    local[:6] -= bow * chords.shear_by[:, at]
+    twice[:6, :6] -= bow * chords.shear_by_twice[:, :, at]
+    rest, give = model.known.recall(model.start, ("load", part.name), lambda: _moment_at_rest(model, part))
+    chain = model.chain_of_sections(beam, e, z)
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
     no_force, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
@@ -148,7 +148,7 @@ def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
     sections = model.line_of_sections(beam, model.start)
     e, xi = sections.locate(zeta)
-    gamma, _ = model.sheared(beam, e, model.start)
+    gamma = model.chords(model.start).shear[beam.elements.start + e]
     (theta,) = _section_angle(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
     return np.array((theta, _mutual_work(model, part, part, sections)))
 
@@ -307,14 +307,10 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
     beam = model.beams[part.beam]
     if isinstance(part, BeamMomentPart):
         unit_load = _beam_moment(model, part, 1.0, z)
-        f = np.zeros(model.size)
-        np.add.at(f, unit_load.dofs, unit_load.gradient)
-        return f
+        return model.spread(unit_load.dofs, unit_load.gradient)
     placed = _load_places(model, part, z)
     chain = model.separate_chain(beam, placed.e, z)
-    f = np.zeros(model.size)
-    np.add.at(f, chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
-    return f
+    return model.spread(chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
 
 
 def force_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:

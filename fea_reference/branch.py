@@ -171,7 +171,7 @@ def _solve(
 ) -> tuple[Array, float] | None:
     """Solution of K t − f τ = ``right`` and w t₀·t + w τ₀ τ = ``last``, with ``along`` (t₀, τ₀); None if singular."""
     way, rate = along
-    matrix = bordered(system.tangent, -f, branch.weights * way, branch.weight * rate)
+    matrix = bordered(system.tangent.matrix, -f, branch.weights * way, branch.weight * rate)
     try:
         solution = factors(matrix).solve(np.append(right, last))
     except RuntimeError:  # exactly singular

@@ -154,35 +154,33 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float,
     z = system.z
     forces: list[Array] = []
     moments: list[float] = []
+
+    def act(force: Array, at: Array) -> None:
+        forces.append(force)
+        moments.append(float(at[0] * force[1] - at[1] * force[0]))
+
     for joint in model.joints:
         if model.bodies[joint.body].dofs is None:
             force, moment = joint_reaction(joint, z)
-            forces.append(force)
-            at = z[joint.dofs[:2]]
-            moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
+            moments.append(moment)
+            act(force, z[joint.dofs[:2]])
     for hinge in model.hinges:
         if (reaction := ground_reaction(model, hinge, z)) is not None:
-            forces.append(reaction[1])
-            at = model.carried(model.bodies[hinge.bodies[0]], hinge.arms[0], z)
-            moments.append(float(at[0] * reaction[1][1] - at[1] * reaction[1][0]))
+            act(reaction[1], model.carried(model.bodies[hinge.bodies[0]], hinge.arms[0], z))
     for hold in (*model.guides, *model.drives):
         force, moment = row_reaction(hold, z)
-        forces.append(force)
-        at = model.carried(model.bodies[hold.body], hold.arm, z)
-        moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
+        moments.append(moment)
+        act(force, model.carried(model.bodies[hold.body], hold.arm, z))
     for stop, _ in acting_stops(model.stops, system.acting):
         if stop.phi is None:
             moments.append(stop.moment(z))
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
         if isinstance(part, OnBeam):
             continue
-        body = model.bodies[part.body]
         if part.direction is None:
             moments.append(float(value))
         else:
-            forces.append(value * part.direction)
-            at = model.carried(body, part.arm, z)
-            moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
+            act(value * part.direction, model.carried(model.bodies[part.body], part.arm, z))
     for load in system.loads:
         forces.append(load.force.sum(axis=1))
         moments.append(load.moment)

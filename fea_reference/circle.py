@@ -37,62 +37,36 @@ import numpy as np
 
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.statement import CircleContact, Scene
-from fea_reference.edge import edge_of
-from fea_reference.hermite import Around, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
-from fea_reference.model import Model, turned
+from fea_reference.hermite import Around, NeutralLine, as_plane
+from fea_reference.model import Model
+from fea_reference.rigid_touch import LAYERS, on_bodies, rigid_touch
 from fea_reference.state import Complex, State, squared, summed
 from fea_reference.swept import swept_over
-from fea_reference.touch import Circle, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.touch import Circle, Penalty, Touch, gauss_places
 from fea_reference.zones import Gap, Zones, negative, steps_within
 
 _BETWEEN = np.arange(1, 8) / 8.0  # shares of the way between two states
 _SAGITTA = 0.15  # times the square of a motion along an arc: largest deviation of its chord
 _AT_END = 1e-6  # elements
-_LAYERS = 32.0  # layers per beam length, for the first penalty
-_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
-# Layers per beam length at the standard penetration: their error is below 1e-7, while thinner layers amplify the
-# round-off of a clamp's place. Penetration goes with the fourth power of the layer, so that a smaller requested
-# penetration has thinner layers.
-_THINNEST, _STANDARD = 800.0, 1e-4
 
 
 def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
     """The scene's contacts of a beam with a circle; ``penetration`` as in the settings."""
     contacts = []
-    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
-    beams = [beam.name for beam in model.beams]
-    bodies = [body.name for body in model.bodies]
-    for name, contact in scene.contacts.items():
-        if not isinstance(contact, CircleContact):
-            continue
-        first, body = beams.index(contact.beam), bodies.index(contact.body)
-        beam = model.beams[first]
-        at = (np.array(contact.center) - model.units.origin) / model.units.length
-        x, y = at - model.bodies[body].centre
-        edge = edge_of(beam.record, beam.elements.stop - beam.elements.start, model.units.length, thick=contact.thick)
-        radius = contact.radius / model.units.length
-        h = float(model.elements.length[beam.elements.start])
-        layer = max(h, 0.5 * beam.thickness, min(beam.length / _LAYERS, radius))
-        contacts.append(
-            Circle(
-                name,
-                first,
-                body,
-                (float(x), float(y)),
-                radius,
-                edge,
-                2.0 * edge.nearest if contact.thick else 1.0,
-                beam.softest / layer**4,
-                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
-            )
-        )
+    records = {name: record for name, record in scene.contacts.items() if isinstance(record, CircleContact)}
+    for name, contact, first, body, edge, h, stiffest in on_bodies(model, records, penetration):
+        beam, radius = model.beams[first], contact.radius / model.units.length
+        x, y = (np.array(contact.center) - model.units.origin) / model.units.length - model.bodies[body].centre
+        layer = max(h, 0.5 * beam.thickness, min(beam.length / LAYERS, radius))
+        scale, softness = 2.0 * edge.nearest if contact.thick else 1.0, beam.softest / layer**4
+        contacts.append(Circle(name, first, body, (float(x), float(y)), radius, edge, scale, softness, stiffest))
     return tuple(contacts)
 
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Zones of overlap of the beam with the circle in state ``z``."""
-    return model.leads.recall(
-        z, (circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
+    return model.known.recall(
+        z, ("lead", circle, 0.0), lambda: (_zones_below(_relative_line(model, circle, z), circle, 0.0), {})
     )[0]
 
 
@@ -136,53 +110,15 @@ def passes_through(model: Model, circle: Circle, before: State, after: State) ->
 
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
-    beam, body = model.beams[circle.first], model.bodies[circle.body]
-    relative, c = _relative_line(model, circle, z), centre(model, circle, z)
-    line = relative.line
-    ahead, _ = model.leads.recall(z, (circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {}))
+    relative = _relative_line(model, circle, z)
+    ahead, _ = model.known.recall(
+        z, ("lead", circle, penalty.lead), lambda: (_zones_below(relative, circle, penalty.lead), {})
+    )
     zones = replace(ahead, least=ahead.least + penalty.lead)
-
-    points, weights = gauss(quadrature)
-    width = zones.intervals[:, 1] - zones.intervals[:, 0]
-    zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
-    there = line.around(zeta)
-    e = there.element
-    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
-
-    r, toward, g = _clearance(relative, circle, there, zeta)
-    x, n = as_plane(line.nodes[e] + there.way), as_plane(toward)
-    tau = np.array([n[1], -n[0]])
-
-    H = shapes(zeta - e)
-    g_q, p = projected_gradient(n, H, line, e), projected_gradient(tau, H, line, e)
-    own = projected_hessian(n, H, line, e)
-    if body.dofs is not None:
-        arm = turned(np.array(circle.arm), z[body.dofs[2]])
-        across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
-        g_q = np.concatenate([g_q, -n, -across[None] @ n])
-        p = np.concatenate([p, -tau, -across[None] @ tau])
-    g_qq = p[:, None] * p[None, :] / r
-    g_qq[:7, :7] += own
-    if body.dofs is not None:
-        g_qq[9, 9] += turned(np.array(circle.arm), z[body.dofs[2]]) @ n
-
-    g = g - penalty.lead
-    weight = penalty.stiffness * ds
-    points_per_place = count_points_per_place(quadrature, e)
-    return Touch(
-        pair=circle,
-        zones=zones,
-        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
-        points_per_place=points_per_place,
-        stiffness=weight,
-        gap=g,
-        gap_by=g_q,
-        gap_by_twice=g_qq,
-        zeta=zeta,
-        zeta_m=np.empty(0),
-        x=x,
-        x_m=c[:, None] + circle.radius * n,
-        normal=n,
+    places = gauss_places(zones, relative.line, quadrature)
+    r, n, g = _clearance(relative, circle, places[1], places[0])
+    return rigid_touch(
+        model, circle, penalty, quadrature, z, zones, places, (g, as_plane(n), 1.0 / r, r - circle.radius)
     )
 
 
@@ -276,7 +212,7 @@ def _zones_below(relative: _RelativeLine, circle: Circle, lead: float) -> Zones:
         ahead = n.conj() * there.ahead
         slope = ahead.real - circle.edge.slope(zeta) if circle.edge.varies else ahead.real
         curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
-        return Gap(g - lead, slope, curvature, zeta_m, np.ones(zeta.shape, dtype=bool))
+        return Gap(g - lead, slope, curvature, zeta_m, zeta == zeta)
 
     zeta, neighbours = steps_within(relative.near(circle, lead), circle.edge.inner)
     floor = float(np.finfo(float).eps) * line.longest

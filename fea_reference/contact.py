@@ -41,7 +41,9 @@ and with δ = p/ε the pressure acts at zero gap; :mod:`fea_reference.circle` de
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -67,7 +69,7 @@ from fea_reference.model import BeamPart, Model
 from fea_reference.neighbours import nearest
 from fea_reference.state import State
 from fea_reference.staying import frame_of
-from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.touch import Pair, Penalty, Touch, count_points_per_place, gauss, gauss_places
 from fea_reference.zones import (
     Survey,
     Zones,
@@ -89,7 +91,7 @@ _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of 
 _LYING = 1.0  # elements: least length of a zone at an end with a resting pressure
 _LINE = 7  # unknowns of an element's line
 _WEIGHTLESS = 1e-6  # least share of the force of all zones
-_LAYERS = 32.0  # layers per beam length, for the widest layer
+_LAYERS = 10.0  # layers per beam length, for the widest layer
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
@@ -261,7 +263,7 @@ def _survey(model: Model, pair: Pair, z: State, T: float) -> Survey:
             return survey_pair(first, second, pair.side, T, pair.tapers, pair.free)
         return survey_self(first, pair.roles, T, pair.tapers)
 
-    return model.surveys.recall(z, (pair, T), look)
+    return model.known.recall(z, ("survey", pair, T), look)
 
 
 def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
@@ -330,7 +332,7 @@ class _GaussPoints:
     """Gauss points (k,) along the first beam: elements, places and points of both lines, and the gap.
 
     ``ds`` (k,) is arc length of the first beam. ``by`` (14, k) and ``by_twice`` (14, 14, k) are derivatives of the
-    gap by the element unknowns of the first line, then of the second.
+    gap by the element unknowns of the first line, then of the second, evaluated at the first call.
     """
 
     e: Ints
@@ -341,8 +343,8 @@ class _GaussPoints:
     x_m: Array
     ds: Array
     g: Array
-    by: Array
-    by_twice: Array
+    by: Callable[[], Array]
+    by_twice: Callable[[], Array]
     normal: Array
 
     def with_other(self, other: _GaussPoints, order: Ints) -> _GaussPoints:
@@ -360,8 +362,8 @@ class _GaussPoints:
             x_m=both(self.x_m, other.x),
             ds=both(self.ds, other.ds),
             g=both(self.g, other.g),
-            by=both(self.by, np.roll(other.by, _LINE, axis=0)),
-            by_twice=both(self.by_twice, np.roll(other.by_twice, (_LINE, _LINE), axis=(0, 1))),
+            by=cache(lambda: both(self.by(), np.roll(other.by(), _LINE, axis=0))),
+            by_twice=cache(lambda: both(self.by_twice(), np.roll(other.by_twice(), (_LINE, _LINE), axis=(0, 1)))),
             normal=both(self.normal, -other.normal),
         )
 
@@ -369,17 +371,12 @@ class _GaussPoints:
 def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _GaussPoints:
     """The gap at the Gauss points of the first beam's ``zones``."""
     line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
-    points, weights = gauss(quadrature)
-    share = 0.5 * (points + 1.0)
-    width = zones.intervals[:, 1] - zones.intervals[:, 0]
-    zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
-    guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
     # an interval and its Gauss points lie within a single element
-    e, xi = line.locate(zeta)
-    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
-
-    there = line.around(zeta)
-    x = line.nodes[there.element] + there.way
+    zeta, there, ds = gauss_places(zones, line, quadrature)
+    share = 0.5 * (gauss(quadrature)[0] + 1.0)
+    guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
+    e, x = there.element, line.nodes[there.element] + there.way
+    xi = zeta - e
     faced = pair.places_facing(line, line_m, zeta, guess)
     zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)
@@ -388,23 +385,37 @@ def _gauss_points(model: Model, pair: Pair, distance: float, quadrature: int, z:
     n = np.array([-tau[1], tau[0]])
     d = (n * as_plane(line_difference(line, there, line_m, across))).sum(axis=0)
     a = (n * as_plane(across.bent)).sum(axis=0)
-    Z = np.where(faced.fixed, 1.0, J**2 - d * a)
+    Z, fixed = J * J - d * a, faced.fixed
     side = pair.sides(zeta, zeta_m, d)
     g = side * d - distance
     if pair.tapers is not None:
         g += pair.tapers.thinner(zeta, zeta_m)
 
-    H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
-    d_q = np.concatenate([projected_gradient(n, H, line, e), -projected_gradient(n, H_m, line_m, e_m)])
-    p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:_LINE]), projected_gradient(n, H_m1, line_m, e_m)])
-    pk = p[:, None] * k[None, :]
-    d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
-    if faced.fixed.any():
-        d_qq = np.where(faced.fixed, p[:, None] * p[None, :] / np.where(d == 0.0, 1.0, d), d_qq)
-    d_qq[:_LINE, :_LINE] += projected_hessian(n, H, line, e)
-    d_qq[_LINE:, _LINE:] -= projected_hessian(n, H_m, line_m, e_m)
-    return _GaussPoints(e, e_m, zeta, zeta_m, as_plane(x), as_plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
+    H, H_m = shapes(xi), shapes(xi_m)
+
+    @cache
+    def by() -> Array:
+        by_q = np.concatenate([projected_gradient(n, H, line, e), -projected_gradient(n, H_m, line_m, e_m)])
+        return np.asarray(side * by_q)
+
+    def by_twice() -> Array:
+        p = np.concatenate([projected_gradient(tau, H, line, e), -projected_gradient(tau, H_m, line_m, e_m)])
+        # p and k by the unknowns of both lines; k has those of the second alone
+        k = projected_gradient(n, shape_slopes(xi_m), line_m, e_m)
+        shares = np.array([a, J, d]) / (Z if fixed is None else np.where(fixed, 1.0, Z))
+        if fixed is not None:
+            shares = np.where(fixed, [-1.0 / np.where(d == 0.0, 1.0, d), 0.0 * d, 0.0 * d], shares)
+        a_Z, J_Z, d_Z = shares
+        d_qq = (-a_Z * p)[:, None] * p
+        pk = (-J_Z * p)[:, None] * k
+        d_qq[:, _LINE:] += pk
+        d_qq[_LINE:] += pk.transpose(1, 0, 2)
+        d_qq[_LINE:, _LINE:] -= (d_Z * k)[:, None] * k
+        d_qq[:_LINE, :_LINE] += projected_hessian(n, H, line, e)
+        d_qq[_LINE:, _LINE:] -= projected_hessian(n, H_m, line_m, e_m)
+        return np.asarray(side * d_qq)
+
+    return _GaussPoints(e, e_m, zeta, zeta_m, as_plane(x), as_plane(x_m), ds, g, by, cache(by_twice), side * n)
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:

@@ -35,7 +35,7 @@ def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, .
 
 def zones_of(model: Model, pair: Contact, z: State) -> Zones:
     """Zones of overlap in state ``z``."""
-    return model.overlaps.recall(z, pair, lambda: _zones_of(model, pair, z))
+    return model.known.recall(z, ("zones", pair), lambda: _zones_of(model, pair, z))
 
 
 def least_gap(model: Model, pair: Contact, z: State) -> float:
@@ -63,8 +63,11 @@ def touch(
     model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None = None
 ) -> Touch:
     """Contact energy derivatives, see :func:`fea_reference.contact.touch`; only pairs of beams are held."""
-    key = pair, penalty, quadrature, held_depth
-    return model.touches.recall(z, key, lambda: _touch(model, pair, penalty, quadrature, z, held_depth))
+    return model.known.recall(
+        z,
+        ("touch", pair, penalty, quadrature, held_depth),
+        lambda: _touch(model, pair, penalty, quadrature, z, held_depth),
+    )
 
 
 def _touch(model: Model, pair: Contact, penalty: Penalty, quadrature: int, z: State, held_depth: float | None) -> Touch:

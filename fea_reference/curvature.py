@@ -23,11 +23,12 @@ without negative pivot. Round-off moves a pivot by the unit round-off times the 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky_banded, eigh_tridiagonal, null_space
 from scipy.linalg.lapack import dpbtrs
-from scipy.sparse import csr_array
+from scipy.sparse import csc_matrix, csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from cprbm_scene.answer import Array
@@ -66,7 +67,8 @@ def softest(model: Model, system: System) -> Mode:
     a proof a smaller value with a proof is returned. If even zero has none, the result is negative: a Ritz value
     above a proven negative bound. Then a curvature of this size is negative, or round-off hides the sign.
     """
-    on, root = _feasible(model, system), np.sqrt(lumped_mass(model))
+    on = _feasible(model, system)
+    root = np.sqrt(on.mass)
 
     def factor(sigma: float) -> Array | None:
         """Cholesky factor of A − σ M; None for a negative pivot."""
@@ -97,9 +99,9 @@ def moment_mode(model: Model, system: System, drag: float) -> Array:
     """
     on, moments = _feasible(model, system), np.zeros(model.size)
     factor = _factor(on.stiffness + drag * on.inertia)
-    lengths = lumped_mass(model)[model.node_dofs[2]]
+    lengths = on.mass[model.node_dofs[2]]
     moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths))
-    return moments if factor is None else _solve(on, factor, moments)
+    return moments if factor is None else on.solve(factor, moments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,16 +109,23 @@ class _Feasible:
     """The feasible directions, in an order with a small bandwidth of A.
 
     Attributes:
-        T: motions of all unknowns by the directions (size, q); back: the transpose.
-        place: position (q,) of every direction in this order.
+        rows, columns, entries: T, motions of all unknowns (size,) by the directions (q,).
+        mass: M, (size,).
         stiffness, inertia: lower halves of A and T^T M T (width + 1, q), in LAPACK's band storage.
     """
 
-    T: csr_array
-    back: csr_array
-    place: Index
+    rows: Index
+    columns: Index
+    entries: Array
+    mass: Array
     stiffness: Array
     inertia: Array
+
+    def solve(self, factor: Array, forces: Array) -> Array:
+        """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
+        right = np.bincount(self.columns, self.entries * forces[self.rows], factor.shape[1])
+        directions = dpbtrs(factor, right, lower=1)[0]
+        return np.asarray(np.bincount(self.rows, self.entries * directions[self.columns], forces.size), dtype=float)
 
 
 def _factor(band: Array) -> Array | None:
@@ -129,30 +138,82 @@ def _factor(band: Array) -> Array | None:
 
 def _feasible(model: Model, system: System) -> _Feasible:
     """T, A and the lumped mass on the feasible directions."""
-    tangent = system.tangent
-    K = csr_array((tangent.data, tangent.indices, tangent.indptr), tangent.shape)  # symmetric
-    T = _directions(model, system, K)
-    back = T.T.tocsr()
-    KT = K @ T
+    K, mass = system.tangent.matrix, lumped_mass(model)
+    rows, columns, entries = _directions(model, system, K)
     axial = model.element_dofs[6]
-    BT = KT[axial]
-    compliance = np.maximum(-tangent.diagonal()[axial], model.elements.length / _STIFF)
-    BT.data /= np.sqrt(np.repeat(compliance, np.diff(BT.indptr)))
-    A = csr_array(back @ KT + BT.T.tocsr() @ BT)
-    order = reverse_cuthill_mckee(A, symmetric_mode=True)
-    place = np.empty(order.size, dtype=np.int64)
-    place[order] = np.arange(order.size)
-    mass = np.repeat(lumped_mass(model), np.diff(T.indptr))
-    stiffness, inertia = _bands(place, A, csr_array(back @ csr_array((mass * T.data, T.indices, T.indptr), T.shape)))
-    return _Feasible(T, back, place, stiffness, inertia)
+    place, bands = _layout(*(of.tobytes() for of in (K.indices, K.indptr.astype(np.int64), rows, columns, axial)))
+    compliance = np.maximum(-K.diagonal()[axial], model.elements.length / _STIFF)
+    return _Feasible(rows, place[columns], entries, mass, *bands(K.data, compliance, entries, mass[rows]))
 
 
-def _directions(model: Model, system: System, K: csr_array) -> csr_array:
-    """T: all motions by the independent motions; zero rows for forces and multipliers."""
+@lru_cache(maxsize=32)
+def _layout(
+    indices: bytes, indptr: bytes, rows: bytes, columns: bytes, axial: bytes
+) -> tuple[Index, Callable[[Array, Array, Array, Array], tuple[Array, Array]]]:
+    """Places (q,) of the directions, and the bands of A and T^T M T, for matrices K and T of given patterns.
+
+    The patterns are indices and pointers of K, rows and columns of T, sorted by rows, and the unknowns of the axial
+    forces. The bands follow from the entries of K, the compliances c l, the entries of T and the mass of their rows.
+    """
+    K_columns, pointer, T_rows, T_columns, forces = (
+        np.frombuffer(of, dtype=kind)
+        for of, kind in ((indices, np.int32), *((of, np.int64) for of in (indptr, rows, columns, axial)))
+    )
+    unknowns, size = np.arange(pointer.size - 1), int(T_columns.max(initial=-1)) + 1
+    K_rows, begin = np.repeat(unknowns, np.diff(pointer)), np.searchsorted(T_rows, np.arange(pointer.size))
+    count = np.diff(begin)
+
+    def of_motions(here: Index, there: Index) -> tuple[Index, Index]:
+        """Numbers of the pairs of unknowns with pairs of entries of T, and these entries (2, k)."""
+        return _all_pairs(begin[here], count[here], begin[there], count[there])
+
+    own, own_pairs = of_motions(K_rows, K_columns)
+    element = np.full(unknowns.size, -1)
+    element[forces] = np.arange(forces.size)
+    stretching = np.flatnonzero((element[K_rows] >= 0) & (count[K_columns] > 0))
+    start, stop = (np.searchsorted(K_rows[stretching], forces, side) for side in ("left", "right"))
+    of_element, (first, second) = _all_pairs(start, stop - start, start, stop - start)
+    pair, pairs = of_motions(K_columns[stretching[first]], K_columns[stretching[second]])
+    first, second, of_element = stretching[first[pair]], stretching[second[pair]], of_element[pair]
+    pairs, mass_pairs = np.concatenate([own_pairs, pairs], axis=1), of_motions(unknowns, unknowns)[1]
+
+    pattern = csr_array((np.ones(pairs.shape[1]), tuple(T_columns[pairs])), (size, size))
+    place = np.empty(size, dtype=np.int64)
+    place[reverse_cuthill_mckee(pattern, symmetric_mode=True)] = np.arange(size)
+    width = int(np.abs(np.diff(place[T_columns[pairs]], axis=0)).max(initial=0)) + 1
+
+    # in the band, or behind the band for terms above the diagonal
+    at, mass_at = (
+        np.where(row >= column, (row - column) * size + column, width * size)
+        for row, column in (place[T_columns[on]] for on in (pairs, mass_pairs))
+    )
+
+    def band(at: Index, terms: Array) -> Array:
+        return np.asarray(np.bincount(at, terms, width * size + 1), dtype=float)[:-1].reshape(width, size)
+
+    def bands(K: Array, compliance: Array, T: Array, mass: Array) -> tuple[Array, Array]:
+        values = np.concatenate([K[own], K[first] * K[second] / compliance[of_element]])
+        left, right = mass_pairs
+        return band(at, values * T[pairs[0]] * T[pairs[1]]), band(mass_at, mass[left] * T[left] * T[right])
+
+    return place, bands
+
+
+def _all_pairs(start: Index, count: Index, other_start: Index, other_count: Index) -> tuple[Index, Index]:
+    """Numbers of two ranges (k,), and all pairs (2, k) of a number of the first with a number of the second."""
+    many = count * other_count
+    number = np.repeat(np.arange(count.size), many)
+    within = np.arange(number.size) - (np.cumsum(many) - many)[number]
+    pair = np.array(np.divmod(within, np.maximum(other_count[number], 1)))
+    return number, pair + np.array([start[number], other_start[number]])
+
+
+def _directions(model: Model, system: System, K: csc_matrix) -> tuple[Index, Index, Array]:
+    """T, sorted by rows: all motions by the independent motions; no entries for forces and multipliers."""
     joints = [joint for joint in model.joints if not model.free(joint, system.acting)]
     stops = [stop for stop, _ in acting_stops(model.stops, system.acting)]
     # a row of a joint or stop is the node's motion minus the body's contribution
-    row_of = {int(dof): int(row) for joint in joints for dof, row in zip(joint.dofs, joint.rows, strict=False)}
+    row_of = {dof: row for joint in joints for dof, row in zip(joint.dofs.tolist(), joint.rows.tolist(), strict=False)}
     row_of |= {stop.theta: stop.row for stop in stops}
     free = np.ones(model.size, dtype=bool)
     free[list(row_of)] = False
@@ -165,24 +226,32 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
         constrained = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
         constrained += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
-        free_motions = null_space(K[constrained][:, dofs].toarray()) if constrained else np.eye(dofs.size)
+        free_motions = null_space(_lines(K, constrained)[:, dofs]) if constrained else np.eye(dofs.size)
         here = count + np.arange(free_motions.shape[1])
         count += here.size
         of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, free_motions, strict=True)}
     couplings = [(dof, dof, 1.0) for dof in of_bodies]
-    for dof, row in row_of.items():
-        entry = slice(K.indptr[row], K.indptr[row + 1])
-        couplings += [
-            (dof, int(other), -float(value))
-            for other, value in zip(K.indices[entry], K.data[entry], strict=True)
-            if int(other) in of_bodies
-        ]
+    moved = list(of_bodies)
+    if moved:
+        held, lines = list(row_of), _lines(K, list(row_of.values()))[:, moved]
+        couplings += [(held[i], moved[j], -float(lines[i, j])) for i, j in np.argwhere(lines).tolist()]
     for dof, other, value in couplings:
         here, line = of_bodies[other]
         rows.append(np.full(here.size, dof))
         columns.append(here)
         entries.append(value * line)
-    return csr_array((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (model.size, count))
+    all_rows = np.concatenate(rows)
+    order = np.argsort(all_rows, kind="stable")
+    return all_rows[order], np.concatenate(columns)[order], np.concatenate(entries)[order]
+
+
+def _lines(K: csc_matrix, rows: list[int]) -> Array:
+    """Rows (k, size) of a symmetric matrix."""
+    lines = np.zeros((len(rows), K.shape[0]))
+    for line, row in zip(lines, rows, strict=True):
+        entry = slice(K.indptr[row], K.indptr[row + 1])
+        line[K.indices[entry]] = K.data[entry]
+    return lines
 
 
 def _connected_bodies(model: Model) -> list[set[int]]:
@@ -193,19 +262,6 @@ def _connected_bodies(model: Model) -> list[set[int]]:
         groups = [group for group in groups if group not in joined]
         groups.append(set[int]().union(*joined))
     return groups
-
-
-def _bands(place: Index, *matrices: csr_array) -> list[Array]:
-    """Lower bands of symmetric matrices (m, m) in the order ``place``, all of the largest width."""
-    entries = [(np.repeat(place, np.diff(matrix.indptr)), place[matrix.indices], matrix.data) for matrix in matrices]
-    width = max(int((rows - columns).max(initial=0)) for rows, columns, _ in entries)
-    bands = []
-    for rows, columns, data in entries:
-        lower = rows >= columns
-        band = np.zeros((width + 1, place.size))
-        band[(rows - columns)[lower], columns[lower]] = data[lower]
-        bands.append(band)
-    return bands
 
 
 def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
@@ -219,7 +275,7 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     beside: list[float] = []
     for step in range(_STEPS):
         Q[step] = v
-        w = root * _solve(on, factor, root * v)
+        w = root * on.solve(factor, root * v)
         diagonal.append(float(v @ w))
         so_far = Q[: step + 1]
         w -= so_far.T @ (so_far @ w)
@@ -235,13 +291,6 @@ def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
     u = np.zeros(root.size)
     u[moving] = (so_far.T @ vectors[:, -1])[moving] / root[moving]
     return 1.0 / float(values[-1]), u
-
-
-def _solve(on: _Feasible, factor: Array, forces: Array) -> Array:
-    """T A⁻¹ T^T times ``forces`` (size,), by the factor of A."""
-    right = np.empty(on.place.size)
-    right[on.place] = on.back @ forces
-    return np.asarray(on.T @ dpbtrs(factor, right, lower=1)[0][on.place])
 
 
 def _below_zero(factor: Callable[[float], Array | None]) -> float:

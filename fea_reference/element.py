@@ -39,7 +39,9 @@ which no mesh shows. With λ eliminated by N all orders are N + ½ EA − ½ (N 
 Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1, ch. 7.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, cached_property
 
 import numpy as np
 from skfem import BilinearForm, CellBasis, ElementLineP2, MeshLine
@@ -47,6 +49,11 @@ from skfem import BilinearForm, CellBasis, ElementLineP2, MeshLine
 from cprbm_scene.answer import Array
 from fea_reference.hermite import Index
 from fea_reference.state import State
+
+# the unknowns of an element move the chord (dx, dy), θ₁, θ₂ and N
+_MOTIONS = np.array([0, 1, 2, 0, 1, 3, 4])
+_SIGNS = np.array([-1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+_SIGNS_TWICE = (_SIGNS[:, None] * _SIGNS)[:, :, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,17 +76,56 @@ class Elements:
     fourth: Array
 
 
+@dataclass(frozen=True)
+class Chords:
+    """Chords of n elements in a state; the element is the last index.
+
+    ``length`` l (n,), unit vectors ``ahead`` and ``across``, to the left, (2, n), end rotations ``rotation`` ϑ and
+    ``bent`` Δ (2, n), ``slip`` c (2, n), ``shear`` γ (n,).
+    """
+
+    length: Array
+    ahead: Array
+    across: Array
+    rotation: Array
+    bent: Array
+    slip: Array
+    shear: Array
+
+    @cached_property
+    def shear_by(self) -> Array:
+        """Derivatives (6, n) of γ by (x₁, y₁, θ₁, x₂, y₂, θ₂)."""
+        leaning = (self.slip[0] + self.slip[1]) / self.length
+        by = np.array([*(leaning * self.across), -self.slip[0], -self.slip[1]])
+        return np.asarray(by[_MOTIONS[:6]] * _SIGNS[:6, None])
+
+    @cached_property
+    def shear_by_twice(self) -> Array:
+        """Second derivatives (6, 6, n) of γ by the same unknowns."""
+        (cos, sin), turned = self.ahead, (self.slip[0] + self.slip[1]) / self.length**2
+        along, across = 2.0 * turned * cos * sin, turned * (sin * sin - cos * cos)
+        twice = np.zeros((4, 4, turned.size))
+        twice[:2, :2] = [[along, across], [across, -along]]
+        return _by_nodes(twice, 6)
+
+
 @dataclass(frozen=True, slots=True)
 class ElementForces:
     """Derivatives of Π_e by (x₁, y₁, θ₁, x₂, y₂, θ₂, N); the element is the last index.
 
-    ``gradient`` (7, n), ``hessian`` (7, 7, n), ``energy`` the strain energy (n,), ``rotation`` ϑ (2, n).
+    ``gradient`` (7, n), ``energy`` the strain energy (n,), ``rotation`` ϑ (2, n), and ``hessian`` (7, 7, n), evaluated
+    at the first call.
     """
 
     gradient: Array
-    hessian: Array
     energy: Array
     rotation: Array
+    hessian: Callable[[], Array]
+
+
+def _by_nodes(twice: Array, count: int) -> Array:
+    """Second derivatives (count, count, n) by the element's unknowns, from derivatives by its motions."""
+    return np.asarray(twice[_MOTIONS[:count, None], _MOTIONS[:count]] * _SIGNS_TWICE[:count, :count])
 
 
 def reference(
@@ -140,66 +186,50 @@ def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
     return np.concatenate([np.broadcast_to(np.eye(2)[:, :, None], (2, 2, middle.shape[-1])), middle[None]], axis=0)
 
 
-def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
-    """Forces and stiffness of elements with unknowns ``dofs`` (7, n), in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
+def chords(elements: Elements, dofs: Index, state: State) -> Chords:
+    """Chords of elements with unknowns ``dofs`` (7, n), in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
-    theta = _wrapped(state[dofs[[2, 5]]] - np.arctan2(dy, dx)) + state.rest[dofs[[2, 5]]]
-    delta = theta - elements.rotation
-    N, slip, (quartic, mixed) = state[dofs[6]], elements.slip, elements.fourth
-    gamma = -(slip * delta).sum(axis=0)
+    cos, sin = dx / l, dy / l
+    turning = dofs[[2, 5]]
+    rotation = _wrapped(state.values[turning] - np.arctan2(dy, dx)) + state.rest[turning]
+    bent, slip = rotation - elements.rotation, elements.slip
+    gamma = -(slip[0] * bent[0] + slip[1] * bent[1])
+    return Chords(l, np.array([cos, sin]), np.array([-sin, cos]), rotation, bent, slip, gamma)
 
-    bent = np.einsum("ijn,jn->in", elements.bending, delta)
-    shortened = np.einsum("ijn,jn->in", elements.shortening, delta)
+
+def forces(elements: Elements, chord: Chords, N: Array) -> ElementForces:
+    """Forces and stiffness of elements with axial forces ``N`` (n,)."""
+    l, (cos, sin), delta, gamma = chord.length, chord.ahead, chord.bent, chord.shear  # noqa: E741 - the chord's length
+    slip, (quartic, mixed), stretched = elements.slip, elements.fourth, elements.compliance * elements.length
+    bent, shortened = (K[:, 0] * delta[0] + K[:, 1] * delta[1] for K in (elements.bending, elements.shortening))
     strain_by_rotation = elements.slope + shortened + 2.0 * mixed * N * gamma * slip
-    moment = bent + N * strain_by_rotation - (4.0 * quartic * gamma**3 + mixed * N**2 * gamma) * slip
-    elongation = l - elements.chord + ((elements.slope + 0.5 * shortened) * delta).sum(axis=0) - mixed * N * gamma**2
-    energy = 0.5 * (
-        (delta * bent).sum(axis=0) + elements.compliance * elements.length * N**2 + mixed * (N * gamma) ** 2
-    )
+    sheared = (4.0 * quartic * gamma**2 + mixed * N**2) * gamma
+    moment = bent + N * strain_by_rotation - sheared * slip
+    membrane, doubled = (elements.slope + 0.5 * shortened) * delta, delta * bent
+    elongation = l - elements.chord + membrane[0] + membrane[1] - mixed * N * gamma**2
+    energy = 0.5 * (doubled[0] + doubled[1] + stretched * N**2 + mixed * (N * gamma) ** 2) + quartic * gamma**4
 
-    r, z, turn = _chord(dx, dy, l)
-    total = moment.sum(axis=0)
+    total = moment[0] + moment[1]
+    V = total / l
+    by_motions = np.array([N * cos + V * sin, N * sin - V * cos, *moment, elongation - stretched * N])
 
-    gradient = N * r + np.einsum("in,ian->an", moment, turn)
-    gradient[6] += elongation - elements.compliance * elements.length * N
-    rz = r[:, None] * z[None, :]
-    stiffness = (
-        elements.bending + N * elements.shortening + (12.0 * quartic * gamma**2 - mixed * N**2) * slip[:, None] * slip
-    )
-    turned = np.einsum("ijn,jbn->ibn", stiffness, turn)
-    H = np.einsum("ian,ibn->abn", turn, turned)
-    H += N / l * (z[:, None] * z[None, :]) + total / l**2 * (rz + rz.transpose(1, 0, 2))
-    coupling = r + np.einsum("in,ian->an", strain_by_rotation, turn)
-    H[6] += coupling
-    H[:, 6] += coupling
-    H[6, 6] -= elements.compliance * elements.length + mixed * gamma**2
-    return ElementForces(gradient, H, energy + quartic * gamma**4, theta)
+    @cache
+    def hessian() -> Array:
+        """By the chord d, with direction t and normal n: ∂ϑ = ∂θ − n·∂d/l, ∂l = t·∂d."""
+        K = elements.bending + N * elements.shortening
+        K = K + (12.0 * quartic * gamma**2 - mixed * N**2) * slip[:, None] * slip
+        of_turn, (nx, ny) = K[0] + K[1], chord.across / l
+        whole, lean = of_turn[0] + of_turn[1] + N * l, V / l
+        xx, yy = whole * nx * nx - 2.0 * lean * cos * sin, whole * ny * ny + 2.0 * lean * cos * sin
+        xy = whole * nx * ny + lean * (cos * cos - sin * sin)
+        (x1, x2), (y1, y2), (s1, s2) = -of_turn * nx, -of_turn * ny, strain_by_rotation
+        xN, yN = cos - (s1 + s2) * nx, sin - (s1 + s2) * ny
+        by_N = -stretched - mixed * gamma**2
+        rows = [xx, xy, x1, x2, xN], [xy, yy, y1, y2, yN], [x1, y1, *K[0], s1], [x2, y2, *K[1], s2]
+        return _by_nodes(np.array([*rows, [xN, yN, s1, s2, by_N]]), 7)
 
-
-@dataclass(frozen=True, slots=True)
-class Shear:
-    """Derivatives of γ of n elements, ``by`` (6, n) and ``by_twice`` (6, 6, n) the nodes' (x, y, θ)."""
-
-    by: Array
-    by_twice: Array
-
-
-def shear(elements: Elements, part: slice | Index, dofs: Index, state: State) -> Shear:
-    """Derivatives of γ for the elements ``part``, with unknowns ``dofs`` (7, n)."""
-    dx, dy = state.difference(dofs[3:5], dofs[:2])
-    l, slip = np.hypot(dx, dy), elements.slip[:, part]  # noqa: E741 - the chord's length
-    r, z, turn = _chord(dx, dy, l)
-    rz = r[:6, None] * z[None, :6]
-    by_twice = -slip.sum(axis=0) / l**2 * (rz + rz.transpose(1, 0, 2))
-    return Shear(-np.einsum("in,ian->an", slip, turn[:, :6]), by_twice)
-
-
-def shear_angle(elements: Elements, part: slice, dofs: Index, state: State) -> Array:
-    """γ (n,) of the elements ``part``, with unknowns ``dofs`` (7, n)."""
-    dx, dy = state.difference(dofs[3:5], dofs[:2])
-    theta = _wrapped(state[dofs[[2, 5]]] - np.arctan2(dy, dx)) + state.rest[dofs[[2, 5]]]
-    return np.asarray(-(elements.slip[:, part] * (theta - elements.rotation[:, part])).sum(axis=0))
+    return ElementForces(by_motions[_MOTIONS] * _SIGNS[:, None], energy, chord.rotation, hessian)
 
 
 def layer(elements: Elements, e: int) -> float:
@@ -208,18 +238,6 @@ def layer(elements: Elements, e: int) -> float:
     return float(np.sqrt(slip / (6.0 * (1.0 - 2.0 * slip))))
 
 
-def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noqa: E741 - the chord's length
-    """Derivatives of the chord, l by the unknowns r (7, n), α z/l (7, n), and ϑ (2, 7, n)."""
-    cos, sin, zero = dx / l, dy / l, np.zeros_like(l)
-    r = np.array([-cos, -sin, zero, cos, sin, zero, zero])
-    z = np.array([sin, -cos, zero, -sin, cos, zero, zero])
-    turn = np.zeros((2, *r.shape))
-    turn[:] = -z / l
-    turn[0, 2] += 1.0
-    turn[1, 5] += 1.0
-    return r, z, turn
-
-
 def _wrapped(angle: Array) -> Array:
     """The angle in [−π, π], without round-off if already there."""
-    return np.asarray(angle - 2 * np.pi * np.round(angle / (2 * np.pi)))
+    return np.asarray(angle - 2 * np.pi * np.rint(angle / (2 * np.pi)))

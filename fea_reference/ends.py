@@ -117,7 +117,7 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         levels = [_level(*surface) for surface in surfaces]
     apart = pair.apart(zeta, zeta_m)
     lying = across * levels[0] / (levels[1] - side * apart * across)
-    if faced.fixed.any():  # around a corner of the surface
+    if faced.fixed is not None:  # around a corner of the surface
         lying = np.where(faced.fixed, -side * levels[0] / apart, lying)
     return np.asarray(side * (along * own - lying))
 

@@ -40,29 +40,27 @@ moment at the pin.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import EdgeContact, Scene
 from fea_reference import swept
-from fea_reference.edge import edge_of
 from fea_reference.element import layer
-from fea_reference.hermite import Around, Index, NeutralLine, as_plane, projected_gradient, projected_hessian, shapes
+from fea_reference.hermite import Around, NeutralLine, as_plane, shapes
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import ends_on_edge
+from fea_reference.rigid_touch import LAYERS, by_motions, on_bodies, rigid_touch
 from fea_reference.state import Complex, State, summed
 from fea_reference.swept import ClosestPlaces, swept_over
-from fea_reference.touch import THINNEST, Face, Penalty, Touch, count_points_per_place, gauss
+from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, gauss_places
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, no_zones
 
 _SLENDER = 0.01  # lengths of the longest beam: substitute for the thickness of a beam in contact as a line
-_LAYERS = 32.0  # layers per beam length, for the first penalty
-_RESOLVED = 3.0  # layers per element: their error is of second order in the layer's width
-# as on a circle: the error of thinner layers per beam length is below their round-off at a clamp
-_THINNEST, _STANDARD = 800.0, 1e-4
 _REACH = 2.0  # elements: neighbourhood of a corner
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
@@ -76,20 +74,12 @@ _PARTS = 4  # subdivision of an element for the crossing check
 
 def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
     """The scene's contacts of a beam with an edge; ``penetration`` as in the settings."""
-    contacts = []
-    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
-    beams = [beam.name for beam in model.beams]
-    bodies = [body.name for body in model.bodies]
-    for name, contact in scene.contacts.items():
-        if not isinstance(contact, EdgeContact):
-            continue
-        first, body = beams.index(contact.beam), bodies.index(contact.body)
+    contacts, units = [], model.units
+    records = {name: record for name, record in scene.contacts.items() if isinstance(record, EdgeContact)}
+    for name, contact, first, body, edge, h, stiffest in on_bodies(model, records, penetration):
         beam = model.beams[first]
         elements = beam.elements.stop - beam.elements.start
-        units = model.units
-        edge = edge_of(beam.record, elements, units.length, thick=contact.thick)
-        h = float(model.elements.length[beam.elements.start])
-        width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
+        width = max(h, 0.5 * beam.thickness, beam.length / LAYERS)
         outline, own = ends_on_edge(
             scene, contact, units.origin + units.length * model.bodies[body].centre, units.length
         )
@@ -110,7 +100,7 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 2.0 * edge.nearest if contact.thick else _SLENDER,
                 max(2.0 * edge.nearest, THINNEST) if contact.thick else 1.0,
                 sharpness(outline) * beam.softest / width**4,
-                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
+                stiffest,
             )
         )
     return tuple(contacts)
@@ -130,7 +120,7 @@ def sharpness(outline: Outline) -> float:
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
     """Zones of overlap of the beam with the edge in state ``z``."""
-    return model.leads.recall(z, (face, 0.0), lambda: _View(model, face, z).zones())[0]
+    return model.known.recall(z, ("lead", face, 0.0), lambda: _View(model, face, z).zones())[0]
 
 
 def passes_through(model: Model, face: Face, before: State, after: State) -> bool:
@@ -139,7 +129,7 @@ def passes_through(model: Model, face: Face, before: State, after: State) -> boo
     A point of the beam that crosses from the free side must overlap the edge afterwards.
     """
     chain = face.outline.chain
-    views = [_View(model, face, z) for z in (before, after)]
+    views, zones = [_View(model, face, z) for z in (before, after)], [zones_of(model, face, z) for z in (before, after)]
     even = np.arange(_PARTS * views[0].line.n + 1) / _PARTS
     old, new = (view.place(even) for view in views)
     near = face.outline.near(new)
@@ -152,31 +142,31 @@ def passes_through(model: Model, face: Face, before: State, after: State) -> boo
         path = new - old
         from_a, from_b = (path[0] * (at[1] - old[1]) - path[1] * (at[0] - old[0]) for at in (a, b))
         through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0) & apart & ~inside
-        if through.any() and not _slid_along(views[0], views[1], even[through], path[:, through]).all():
+        if through.any() and not _slid_along(views, zones, even[through], path[:, through]).all():
             return True
-    return _swept_over_tip(face, *views)
+    return _swept_over_tip(face, views, zones)
 
 
-def _slid_along(before: _View, after: _View, zeta: Array, way: Array) -> Flags:
-    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip.
+def _slid_along(views: Sequence[_View], zones: Sequence[Zones], zeta: Array, way: Array) -> Flags:
+    """True for places ``zeta`` (k,) that slid along the beam over a pressing tip, between two states.
 
     ``way`` (2, k) are the paths of the places in the body frame. A tip that presses before and after has penetrated
     the beam: neighbouring places enter on one side and leave on the other.
     """
-    tips = [view.tips() for view in (before, after)]
-    there = [swept.closest_places(view.line, at) for view, (at, _) in zip((before, after), tips, strict=True)]
-    pressed = there[0].found & before.pressed_at(there[0], tips[0][1])
-    pressed &= there[1].found & after.pressed_at(there[1], tips[1][1])
+    tips = [view.tips() for view in views]
+    there = [swept.closest_places(view.line, at) for view, (at, _) in zip(views, tips, strict=True)]
+    pressed = there[0].found & views[0].pressed_at(there[0], tips[0][1], zones[0])
+    pressed &= there[1].found & views[1].pressed_at(there[1], tips[1][1], zones[1])
     low, high = (choose(there[0].zeta, there[1].zeta) for choose in (np.minimum, np.maximum))
     near = (zeta[:, None] > low - 1.0) & (zeta[:, None] < high + 1.0) & pressed
-    ahead = after.back.conjugate() * (way[0] + 1j * way[1])
+    ahead = views[1].back.conjugate() * (way[0] + 1j * way[1])
     across = np.abs((there[1].n.conj() * ahead[:, None]).real)
     return np.asarray((near & (across < _ALONG * np.abs(ahead)[:, None])).any(axis=1))
 
 
-def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
+def _swept_over_tip(face: Face, views: Sequence[_View], zones: Sequence[Zones]) -> bool:
     """True if the beam passed over a tip between two samples and does not press on the tip any more."""
-    tips = [view.tips() for view in (before, after)]
+    (before, after), tips = views, [view.tips() for view in views]
     if tips[0][0].size == 0:
         return False
     first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
@@ -185,8 +175,8 @@ def _swept_over_tip(face: Face, before: _View, after: _View) -> bool:
     over &= last.distance_along(tips[1][1]) < 0.0
     if not over.any():
         return False
-    over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1])
-    return bool((over & ~after.pressed_at(last, tips[1][1])).any())
+    over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1], zones[0])
+    return bool((over & ~after.pressed_at(last, tips[1][1], zones[1])).any())
 
 
 def tip_depth(model: Model, face: Face, z: State) -> float:
@@ -202,7 +192,7 @@ def tip_depth(model: Model, face: Face, z: State) -> float:
         deep &= np.abs(there.zeta - end) > 1.0
     if not deep.any():
         return 0.0
-    return float(depth[deep & view.pressed_at(there, out)].max(initial=0.0))
+    return float(depth[deep & view.pressed_at(there, out, zones_of(model, face, z))].max(initial=0.0))
 
 
 def edge_distances(model: Model, face: Face, z: State, zeta: Array) -> Near:
@@ -221,71 +211,39 @@ def corners_of(model: Model, face: Face, z: State) -> Complex:
 
 def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """Contact energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
-    beam, body = model.beams[face.first], model.bodies[face.body]
     view = _View(model, face, z)
-    ahead, kinks = model.leads.recall(z, (face, penalty.lead), lambda: view.zones(penalty.lead))
+    ahead, kinks = model.known.recall(z, ("lead", face, penalty.lead), lambda: view.zones(penalty.lead))
     zones = replace(ahead, least=ahead.least + penalty.lead)
-    line = view.line
-
-    points, weights = gauss(quadrature)
-    width = zones.intervals[:, 1] - zones.intervals[:, 0]
-    zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
-    e, xi = line.locate(zeta)
-    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
-
-    x = line.at(zeta)[0]
-    near = face.outline.near(view.place(zeta))
-    n = view.turned(near.normal)
-    tau = np.array([n[1], -n[0]])
-    r = x - view.centre[:, None]
+    places = gauss_places(zones, view.line, quadrature)
+    y, rest = view.place_and_rest(places[1])
+    near = face.outline.near(y)
     # the contact force needs the unrounded gap; for the interval ends rounded points suffice
-    g = face.outline.exact_distance(*view.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
+    g = face.outline.exact_distance(y, rest, near) - face.edge.at(places[0])
+    surface = g, view.turned(near.normal), near.bend, near.distance
+    contact = rigid_touch(model, face, penalty, quadrature, z, zones, places, surface)
+    ends = np.isin(zones.intervals, [end for end in (0.0, float(view.line.n)) if end not in face.own])
+    bends = _bends(zones, kinks)
+    sharp = bool(ends.any()) or bool(bends) or bool(near.corner.any())
+    corners = partial(_corner_terms, view, zones, bends, kinks, penalty, quadrature) if bends else None
+    return replace(contact, extra_hessian=corners, sharp=sharp)
 
-    H = shapes(xi)
-    moves = body.dofs is not None
-    g_q = view.by(n, H, e, r, moves=moves)
-    p = view.by(tau, H, e, r, moves=moves)
-    g_qq = near.bend * p[:, None] * p[None, :]
-    g_qq[:7, :7] += projected_hessian(n, H, line, e)
-    if moves:
-        across = np.array([-n[1], n[0]])  # across·w = −n·k × w
-        turning = np.concatenate([projected_gradient(across, H, line, e), -across])
-        g_qq[:9, 9] += turning
-        g_qq[9, :9] += turning
-        g_qq[9, 9] -= (n * r).sum(axis=0)
 
-    ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
-    bent = _corner_terms(view, zones, kinks, penalty, quadrature, moves=moves)
-    points_per_place = count_points_per_place(quadrature, e)
-    weight = penalty.stiffness * ds
-    return Touch(
-        pair=face,
-        zones=zones,
-        chain=model.chain(((beam, e[::points_per_place]),), z, body.dofs),
-        points_per_place=points_per_place,
-        stiffness=weight,
-        gap=g,
-        gap_by=g_q,
-        gap_by_twice=g_qq,
-        zeta=zeta,
-        zeta_m=np.empty(0),
-        x=x,
-        x_m=x - near.distance * n,
-        normal=n,
-        extra_hessian=bent,
-        sharp=bool(ends.any()) or bent is not None or bool(near.corner.any()),
-    )
+def _bends(zones: Zones, kinks: dict[float, np.int64]) -> list[tuple[int, float]]:
+    """Numbers and ends of the intervals that meet the next interval at a corner."""
+    bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
+    return [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
 
 
 def _corner_terms(
-    view: _View, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
-) -> Array | None:
-    """Second-derivative terms (m, m, k) of the moving places at corners; None without corners."""
-    bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
-    bends = [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
-    if not bends:
-        return None
-    size = 10 if moves else 7
+    view: _View,
+    zones: Zones,
+    bends: list[tuple[int, float]],
+    kinks: dict[float, np.int64],
+    penalty: Penalty,
+    quadrature: int,
+) -> Array:
+    """Second-derivative terms (m, m, k) of the moving places at corners."""
+    size = 10 if view.moves else 7
     terms = np.zeros((size, size, len(zones.intervals) * quadrature))
     for i, end in bends:
         # the element that contains the interval: at a node the next interval has the same term
@@ -301,7 +259,7 @@ def _corner_terms(
         difference = view.turned((before - behind)[:, None])
         slope = steeper[first] - steeper[1 - first]
         gap = float(view.gap(np.array([end]))[0]) - penalty.lead
-        by = view.by(difference, shapes(xi), e, x - view.centre[:, None], moves=moves)[:, 0]
+        by = by_motions(difference, shapes(xi), view.line, e, x - view.centre[:, None], moves=view.moves)[:, 0]
         terms[:, :, (i + 1) * quadrature - 1] = (
             -penalty.stiffness * gap / slope * float(view.line.lengths[e[0]]) * np.outer(by, by)
         )
@@ -315,6 +273,7 @@ class _View:
         self.face = face
         self.line: NeutralLine = model.line(model.beams[face.first], z)
         body: BodyPart = model.bodies[face.body]
+        self.moves = body.dofs is not None
         X, Y, self.phi = model.body_state(body, z)
         self.centre = body.centre + np.array([X, Y])
         rest = np.zeros(2) if body.dofs is None else z.rest[body.dofs[:2]]
@@ -327,9 +286,8 @@ class _View:
         """Points y (2, k)."""
         return as_plane(self._place(self.line.around(zeta)))
 
-    def place_and_rest(self, zeta: Array) -> tuple[Array, Array]:
+    def place_and_rest(self, there: Around) -> tuple[Array, Array]:
         """Points y (2, k) and their round-off."""
-        there = self.line.around(zeta)
         value, error = summed(self.nodes[there.element], self.back * there.way)
         return as_plane(value), as_plane(error + self.rests[there.element])
 
@@ -345,26 +303,21 @@ class _View:
         """Gap g (k,)."""
         return np.asarray(self.face.outline.near(self.place(zeta)).distance - self.face.edge.at(zeta))
 
-    def by(self, v: Array, H: Array, e: Index, r: Array, *, moves: bool) -> Array:
-        """Derivatives of v·δu (m, k) by the line's element, and by the body's three unknowns if it ``moves``."""
-        own = projected_gradient(v, H, self.line, e)
-        if not moves:
-            return own
-        return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
-
     def tips(self) -> tuple[Complex, Complex]:
         """Current positions of tips and mean directions of their contact force, (t,) both, as complex numbers."""
         points, out = (vectors[0] + 1j * vectors[1] for vectors in self.face.outline.tips)
         return complex(*self.centre) + self.back.conjugate() * points, self.back.conjugate() * out
 
-    def pressed_at(self, there: ClosestPlaces, out: Complex) -> Flags:
-        """True if the contact pushes the beam away from tips (t,), of current direction ``out``, within an element."""
-        zones, _ = self.zones()
+    def pressed_at(self, there: ClosestPlaces, out: Complex, zones: Zones) -> Flags:
+        """True if the contact pushes the beam away from tips (t,), of current direction ``out``, within an element.
+
+        ``zones`` are the zones of overlap.
+        """
         pressed = np.zeros(out.size, dtype=bool)
         if not len(zones.intervals):
             return pressed
         places, weights = gauss(_LOOKED)
-        width = np.diff(zones.intervals, axis=1)
+        width = zones.intervals[:, 1:] - zones.intervals[:, :1]
         zeta = (zones.intervals.mean(axis=1)[:, None] + 0.5 * width * places).ravel()
         near = self.face.outline.near(self.place(zeta))
         overlap = np.maximum(self.face.edge.at(zeta) - near.distance, 0.0) * (width * weights).ravel()
@@ -383,7 +336,7 @@ class _View:
 
         def at(zeta: Array, none_m: Array) -> Gap:
             there = self._at(zeta, none_m)
-            return replace(there, g=there.g - lead) if lead else there
+            return there._replace(g=there.g - lead) if lead else there
 
         zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
         borders, kinks = self._borders(zeta)
@@ -419,9 +372,12 @@ class _View:
         # of a product with the rotated conjugate normal, the real part is n·v and the imaginary part −τ·v
         back = (near.normal[0] - 1j * near.normal[1]) * self.back
         ahead = back * there.ahead
+        g, slope = near.distance - face.edge.nearest, ahead.real
+        if face.edge.varies:
+            g, slope = near.distance - face.edge.at(zeta), slope - face.edge.slope(zeta)
         return Gap(
-            near.distance - face.edge.at(zeta),
-            ahead.real - face.edge.slope(zeta),
+            g,
+            slope,
             (back * there.bent).real + near.bend * ahead.imag**2,
             none_m,
             near.distance > -face.outline.extent,
@@ -442,7 +398,7 @@ class _View:
         P = corners.points[:, near]
         across = (corners.bisectors, *corners.tangents)
         t = np.concatenate([tangents[:, near] for tangents in across], axis=1)
-        every, crosses = self._crossing(np.tile(P, len(across)), t, np.tile(start, len(across)))
+        every, crosses = self._crossing(np.concatenate([P] * 3, axis=1), t, np.concatenate([start] * 3))
         zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance
         jumps = through & np.where(corners.convex[near], d < 0.0, d > 0.0)
@@ -459,7 +415,7 @@ class _View:
             step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
             moved = np.minimum(np.maximum(zeta - step, 0.0), self.line.n)
             zeta, step = moved, zeta - moved
-            if float(np.abs(step).max()) < _ARRIVED:
+            if np.maximum.reduce(np.abs(step)) < _ARRIVED:
                 break
         crosses = np.abs(((self._place(self.line.around(zeta)) - at) * along_t).real) < _ARRIVED
         for end in self.face.own:

@@ -64,7 +64,7 @@ class Tapers:
 class Facing:
     """Places faced by k points: ζ_m, ``found``, the line ``across`` at ζ_m, w and c.
 
-    ``fixed`` marks places at a knot or an end.
+    ``fixed`` marks places at a knot or an end; None without any.
     """
 
     zeta_m: Array
@@ -72,7 +72,7 @@ class Facing:
     across: Around
     w: Complex
     c: Array
-    fixed: Flags
+    fixed: Flags | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ def facing(
     edge: Edge | None,
     points: Complex,
     guess: Array,
-    sides: Callable[[Array, Array], Array],
+    sides: Callable[[Array, Array], Array | float],
     *,
     ended: bool,
 ) -> Facing:
@@ -116,20 +116,26 @@ def facing(
 
 
 def _between_ends(
-    second: NeutralLine, edge: Edge | None, points: Complex, guess: Array, sides: Callable[[Array, Array], Array]
+    second: NeutralLine,
+    edge: Edge | None,
+    points: Complex,
+    guess: Array,
+    sides: Callable[[Array, Array], Array | float],
 ) -> Facing:
     """Places between the ends of the beam; points beyond an end face nothing."""
     zeta, found, across = closest(second, points, guess)
     J = np.abs(across.ahead)
     w = across.ahead / J
-    foot = Facing(zeta, found, across, w, J, np.zeros(zeta.shape, dtype=bool))
+    foot = Facing(zeta, found, across, w, J, None)
     if edge is None or not edge.varies or not zeta.size:
         return foot
     d = ((1j * w).conj() * (points - second.nodes[across.element] - across.way)).real
-    return _with_lean(second, edge, points, foot, d, sides(zeta, d))
+    return _with_lean(second, edge, points, foot, d, np.broadcast_to(sides(zeta, d), zeta.shape))
 
 
-def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array]) -> Facing:
+def _with_ends(
+    second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array | float]
+) -> Facing:
     """Places with the ends of the beam included."""
     at_end = ~faced.found & ((faced.zeta_m == 0.0) | (faced.zeta_m == second.n))
     if not at_end.any():
@@ -145,7 +151,7 @@ def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Calla
         faced.across,
         w,
         (w.conj() * faced.across.ahead).real,
-        faced.fixed | at_end,
+        at_end if faced.fixed is None else faced.fixed | at_end,
     )
 
 
@@ -199,13 +205,14 @@ def _with_lean(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d
         if done:
             break
     found = np.abs(f) <= 1e-6 * np.sqrt(r.real**2 + r.imag**2 + c**2)
-    fixed = corner >= 0
-    if fixed.any():
+    at_corner = corner >= 0
+    fixed = at_corner if at_corner.any() else None
+    if fixed is not None:
         zeta = np.where(fixed, edge.corners[0][corner], zeta)
         found |= fixed
     there = second.around(zeta)
     w = lean(there.ahead, slope, side)
-    if fixed.any():
+    if fixed is not None:
         r = points - second.nodes[there.element] - there.way
         out = np.where(d < 0.0, -1.0, 1.0) * r  # u₀
         w = np.where(fixed, -1j * out / np.maximum(np.abs(out), _NOTHING), w)

@@ -36,7 +36,9 @@ def gap_lower_bound(model: Model, pair: Contact, z: State) -> float:
         case Face():
             r = r + pair.edge.farthest
             y = _in_frame(model, model.bodies[pair.body], c, z)
-            y_0, d_0 = model.distances.recall(model.start, pair, lambda: _distances(model, pair, model.start))
+            y_0, d_0 = model.known.recall(
+                model.start, ("distances", pair), lambda: _distances(model, pair, model.start)
+            )
             apart = float((d_0 - np.abs(y - y_0) - r).min())
             return apart if apart > FAR else float((_distance(pair, y) - r).min())
 
@@ -68,7 +70,7 @@ def _distance(face: Face, y: Complex) -> Array:
 def _discs(model: Model, beam: int, z: State) -> tuple[Complex, Array]:
     """c (k,) as x + i y and r (k,) of beam number ``beam``."""
     part = model.beams[beam]
-    return model.discs.recall(z, part.name, lambda: _discs_of(model.line(part, z)))
+    return model.known.recall(z, ("discs", part.name), lambda: _discs_of(model.line(part, z)))
 
 
 def _discs_of(line: NeutralLine) -> tuple[Complex, Array]:

@@ -64,16 +64,16 @@ class NeutralLine:
     ) -> NeutralLine:
         """The line through ``points`` + ``rest`` (2, n+1), with elements stretched by ``compliance`` ``axial`` (n,)."""
         cos, sin = np.cos(angles), np.sin(angles)
-        nodes, rests, ahead = points[0] + 1j * points[1], rest[0] + 1j * rest[1], cos + 1j * sin
+        nodes, rests, ahead = as_complex(points), as_complex(rest), as_complex((cos, sin))
         step, error = summed(nodes[1:], -nodes[:-1])
-        step = step + (error + np.diff(rests))
+        step = step + (error + (rests[1:] - rests[:-1]))
         give = compliance * lengths
-        turned = np.diff(angles)
+        turned = angles[1:] - angles[:-1]
         speeds = lengths * (1.0 + turned**2 / (2.0 * _ARC)) + give * axial
         t1, t2 = speeds * ahead[:-1], speeds * ahead[1:]
         cubic = np.array([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
         arching = lengths * turned / _ARC
-        tangents, longest = np.array([cos, sin]), float(lengths.max())
+        tangents, longest = np.array([cos, sin]), float(np.maximum.reduce(lengths))
         return cls(points, rest, angles, lengths, speeds, give, arching, tangents, ahead, cubic, nodes, rests, longest)
 
     @property
@@ -120,6 +120,13 @@ class Around:
         return Around(self.element, self.way + by * self.ahead, self.ahead + by * self.bent, self.bent)
 
 
+def as_complex(vectors: Array | tuple[Array, Array]) -> Complex:
+    """Vectors (2, k) as x + i y."""
+    number = np.empty(vectors[0].shape, dtype=np.complex128)
+    number.real, number.imag = vectors
+    return number
+
+
 def as_plane(number: Complex) -> Array:
     """x + i y as (2, k)."""
     return np.array([number.real, number.imag])
@@ -144,14 +151,9 @@ def chord_speed_excess(l: Array, L: Array, turned: Array) -> tuple[Array, Array,
 
 def shapes(xi: Array) -> Array:
     """H at ``xi`` (k,), (4, k)."""
-    return np.array(
-        [
-            1.0 + xi**2 * (2.0 * xi - 3.0),
-            xi * (1.0 - xi) ** 2,
-            xi**2 * (3.0 - 2.0 * xi),
-            xi**2 * (xi - 1.0),
-        ]
-    )
+    square, rest = xi * xi, 1.0 - xi
+    last = square * (3.0 - 2.0 * xi)
+    return np.array([1.0 - last, xi * rest * rest, last, -square * rest])
 
 
 def shape_slopes(xi: Array) -> Array:
@@ -162,8 +164,8 @@ def shape_slopes(xi: Array) -> Array:
 
 def _turned_by(v: Array, H: Array, line: NeutralLine, e: Index) -> tuple[Complex, Complex]:
     """H₂ (v·t₁ + i v·n₁) and H₄ (v·t₂ + i v·n₂), (k,) both, for constant vectors ``v`` (2, k)."""
-    fixed, backs = v[0] + 1j * v[1], line.aheads.conj()
-    return H[1] * (fixed * backs[e]), H[3] * (fixed * backs[e + 1])
+    fixed = as_complex(v)
+    return H[1] * (fixed * line.aheads[e].conj()), H[3] * (fixed * line.aheads[e + 1].conj())
 
 
 def projected_gradient(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:

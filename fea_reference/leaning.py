@@ -22,63 +22,87 @@ contact surface.
 """
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from cprbm_scene.answer import Array
-from fea_reference.element import Elements, shear, shear_angle
+from fea_reference.element import Chords
 from fea_reference.hermite import Index
-from fea_reference.state import State
 
 _LINE = 7  # unknowns of an element's line
-_TANGENTS = (2, 5)  # positions of the tangent angles among these
+TANGENTS = (2, 5)
+"""Positions of the tangent angles among these."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Span:
-    """A beam: the slice ``part`` of all elements, their unknowns ``dofs`` (7, n), and True for ``welded`` ends (2)."""
+    """A beam: the slice ``part`` of all elements, their unknowns ``dofs`` (7, n), and True for ``welded`` ends (2).
+
+    ``slips`` is True for a beam with shear.
+    """
 
     part: slice
     dofs: Index
     welded: tuple[bool, bool]
+    slips: bool
 
 
-def tangent_angles(elements: Elements, span: Span, z: State) -> Array:
-    """ψ (n+1,) of a beam."""
-    dofs = span.dofs
-    theta = np.append(z[dofs[2]], z[dofs[5, -1:]])
-    if not elements.slip[:, span.part].any():
+def tangent_angles(span: Span, theta: Array, shear: Array) -> Array:
+    """ψ (n+1,) of a beam with rotations ``theta`` (n+1,) and shear angles ``shear`` (n,)."""
+    if not span.slips:
         return theta
-    gamma = shear_angle(elements, span.part, dofs, z)
     start, end = (0.0 if welded else 1.0 for welded in span.welded)
-    beside = np.append(start * gamma[:1], gamma) + np.append(gamma, end * gamma[-1:])
-    beside[[0, -1]] *= start, end
-    return np.asarray(theta + 0.5 * beside)
+    beside = np.empty(theta.size)
+    beside[1:-1] = 0.5 * (shear[:-1] + shear[1:])
+    beside[0], beside[-1] = start * shear[0], end * shear[-1]
+    return np.asarray(theta + beside)
 
 
 @dataclass(frozen=True, slots=True)
+class Lean:
+    """Share (k,) of the shear angle of ``elements`` (k,), counted among all, in a tangent angle.
+
+    ``row`` is the tangent angle among a line's unknowns, ``begin`` the first of the element's six rows of M.
+    """
+
+    row: int
+    begin: int
+    elements: Index
+    share: Array
+
+
+@dataclass(frozen=True)
 class Chain:
     """Chain rule from the unknowns of element lines, and of a body, to all unknowns, at k places.
 
     Attributes:
         dofs: unknowns (M, k); the first m belong to the lines' own elements and the body, with θ in place of ψ.
-        rows: which of the m are tangent angles ψ.
-        by: derivatives (rows, M, k) of γ̄ for every such row; twice: second derivatives (rows, M, M, k).
+        leans: contributions to the tangent angles ψ among the m.
         shares: line, first of the six rows of M for an element's nodes, and the element (k,) at every place.
+        chords: chords of all elements.
     """
 
     dofs: Index
-    rows: tuple[int, ...]
-    by: Array
-    twice: Array
+    leans: tuple[Lean, ...]
     shares: tuple[tuple[int, int, Index], ...]
+    chords: Chords
+
+    @cached_property
+    def _leans(self) -> list[tuple[int, slice, Array, Lean]]:
+        """Tangent angle, rows of M and derivatives (6, k) of every contribution."""
+        by = self.chords.shear_by
+        return [
+            (lean.row, slice(lean.begin, lean.begin + 6), lean.share * by[:, lean.elements], lean)
+            for lean in self.leans
+        ]
 
     def gradient(self, local: Array) -> Array:
         """Derivatives (M, k) by all unknowns from derivatives ``local`` (m, k) by the lines' unknowns."""
         total = np.zeros(self.dofs.shape)
         total[: len(local)] = local
-        for row, by in zip(self.rows, self.by, strict=True):
-            total += local[row] * by
+        for row, here, by, _ in self._leans:
+            total[here] += local[row] * by
         return total
 
     def hessian(self, local: Array, gradient: Array) -> Array:
@@ -89,76 +113,48 @@ class Chain:
         m, size = len(gradient), self.dofs.shape
         half = np.zeros((m, *size))
         half[:, :m] = local
-        for row, by in zip(self.rows, self.by, strict=True):
-            half += local[:, row, None] * by
+        for row, here, by, _ in self._leans:
+            half[:, here] += local[:, row, None] * by
         total = np.zeros((size[0], *size))
         total[:m] = half
-        for row, by, twice in zip(self.rows, self.by, self.twice, strict=True):
-            total += by[:, None] * half[row] + gradient[row] * twice
+        for row, here, by, lean in self._leans:
+            total[here] += by[:, None] * half[row]
+            total[here, here] += gradient[row] * lean.share * self.chords.shear_by_twice[:, :, lean.elements]
         return total
 
     def local(self, step: Array, m: int) -> Array:
         """Step (m, k) of the lines' unknowns, with tangent angles for rotations, from a ``step`` (size,) of all."""
         steps = step[self.dofs]
         own = steps[:m].copy()
-        for row, by in zip(self.rows, self.by, strict=True):
-            own[row] += (by * steps).sum(axis=0)
+        for row, here, by, _ in self._leans:
+            own[row] += (by * steps[here]).sum(axis=0)
         return own
 
 
-def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index, z: State) -> Chain:
-    """Chain rule of k places on one or two lines and a body's unknowns ``body`` (0 or 3, k), in this order.
+@lru_cache(maxsize=64)
+def places(
+    spans: tuple[Span, ...], elements: tuple[bytes, ...], body: tuple[int, ...]
+) -> tuple[Index, tuple[Lean, ...], tuple[tuple[int, int, Index], ...]]:
+    """Unknowns, leans and shares of a chain of k places on one or two lines and of a ``body`` (0 or 3), in this order.
 
-    Args:
-        elements: of all beams.
-        lines: beam, and element (k,) of every place counted in the beam, per line.
-        body: may be empty.
-        z: the state.
+    ``elements`` are the bytes of the elements (k,) of the places, counted in every line's beam.
     """
-    own = np.concatenate([*(span.dofs[:, e] for span, e in lines), body])
-    shares = [(i, _LINE * i, e) for i, (_, e) in enumerate(lines)]
-    leaning = [(i, line) for i, line in enumerate(lines) if elements.slip[:, line[0].part].any()]
-    if not leaning:
-        return _plain_chain(own, tuple(shares))
-    size, k = len(own) + 12 * len(leaning), own.shape[1]
-    rows, beside = [], [own]
-    by, twice = np.zeros((2 * len(leaning), size, k)), np.zeros((2 * len(leaning), size, size, k))
-    for number, (i, (span, e)) in enumerate(leaning):
-        last = span.dofs.shape[1] - 1
-        near = np.clip(np.stack([e - 1, e, e + 1]), 0, last)
-        slip = shear(elements, span.part.start + near.ravel(), span.dofs[:, near.ravel()], z)
-        slip_by, slip_twice = slip.by.reshape(6, 3, k), slip.by_twice.reshape(6, 6, 3, k)
-        for tangent in (0, 1):
-            number_of_tangent = 2 * number + tangent
-            rows.append(_LINE * i + _TANGENTS[tangent])
-            neighbour = near[2 * tangent]
-            share = np.where(neighbour == e, 0.0, 0.5)
-            own_share = np.where(neighbour == e, 0.0 if span.welded[tangent] else 1.0, 0.5)
-            row = len(own) + 12 * number + 6 * tangent
-            beside.append(span.dofs[:6, neighbour])
+    numbers = [np.frombuffer(of_line, dtype=np.int64) for of_line in elements]
+    dofs = [span.dofs[:, e] for span, e in zip(spans, numbers, strict=True)]
+    dofs.append(np.repeat(np.array(body, dtype=np.int64)[:, None], numbers[0].size, axis=1))
+    shares = [(i, _LINE * i, e) for i, e in enumerate(numbers)]
+    leans: list[Lean] = []
+    row = _LINE * len(spans) + len(body)
+    for i, (span, e) in enumerate(zip(spans, numbers, strict=True)):
+        if not span.slips:
+            continue
+        for tangent, neighbour in enumerate((np.maximum(e - 1, 0), np.minimum(e + 1, span.dofs.shape[1] - 1))):
+            at_end = neighbour == e
+            own = np.where(at_end, 0.0 if span.welded[tangent] else 1.0, 0.5)
+            line, angle = _LINE * i, _LINE * i + TANGENTS[tangent]
+            beside = Lean(angle, row, span.part.start + neighbour, np.where(at_end, 0.0, 0.5))
+            leans += [Lean(angle, line, span.part.start + e, own), beside]
+            dofs.append(span.dofs[:6, neighbour])
             shares.append((i, row, neighbour))
-            for begin, where, weight in ((_LINE * i, 1, own_share), (row, 2 * tangent, share)):
-                here = slice(begin, begin + 6)
-                by[number_of_tangent, here] = weight * slip_by[:, where]
-                twice[number_of_tangent, here, here] = weight * slip_twice[:, :, where]
-    return Chain(np.concatenate(beside), tuple(rows), by, twice, tuple(shares))
-
-
-def own_chain(span: Span, e: Index) -> Chain:
-    """Chain rule of elements (k,) of a beam with the sections' rotations as tangents."""
-    return _plain_chain(span.dofs[:, e], ((0, 0, e),))
-
-
-def sheared_chain(elements: Elements, span: Span, e: Index, z: State) -> Chain:
-    """Chain rule of separate elements (k,) of a beam, tangent at both ends by their own shear angle."""
-    own = span.dofs[:, e]
-    if not elements.slip[:, span.part].any():
-        return _plain_chain(own, ((0, 0, e),))
-    slip = shear(elements, span.part.start + e, own, z)
-    by, twice = np.zeros(own.shape), np.zeros((_LINE, *own.shape))
-    by[:6], twice[:6, :6] = slip.by, slip.by_twice
-    return Chain(own, _TANGENTS, np.stack([by, by]), np.stack([twice, twice]), ((0, 0, e),))
-
-
-def _plain_chain(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
-    return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), shares)
+            row += 6
+    return np.concatenate(dofs), tuple(leans), tuple(shares)

@@ -34,7 +34,7 @@ from fea_reference.contacts import (
 from fea_reference.curvature import all_positive, softest
 from fea_reference.face import tip_depth
 from fea_reference.model import Model
-from fea_reference.newton import equilibrium
+from fea_reference.newton import Solved, equilibrium
 from fea_reference.off_a_corner import slipped_off
 from fea_reference.onward import PathTangent, path_tangent
 from fea_reference.poised import without_gap_round_off
@@ -247,6 +247,20 @@ class March:
         sense = float(np.sign(target - self.values[load]))
         return path_tangent(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
 
+    def _equilibrium(
+        self,
+        penalties: Mapping[Contact, Penalty],
+        values: Array,
+        z: State,
+        depths: Mapping[Contact, float],
+        pushes: Mapping[Contact, Array],
+        settings: Settings | None = None,
+    ) -> Solved:
+        """Equilibrium near ``z`` with the current constraints, see :func:`fea_reference.newton.equilibrium`."""
+        solved = equilibrium(self.model, settings or self.settings, penalties, values, z, self.acting, depths, pushes)
+        self.iterations += solved.iterations
+        return solved
+
     def solve(
         self, load: int, value: float, z: State, starting_contacts: Mapping[Contact, Touch] = _NONE
     ) -> System | None:
@@ -260,8 +274,7 @@ class March:
             pair: contact.penetration for pair, contact in starting_contacts.items() if isinstance(pair, Pair)
         }
         pushes = self.pushes() | {pair: contact.pushes for pair, contact in starting_contacts.items()}
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self.acting, depths, pushes)
-        self.iterations += solved.iterations
+        solved = self._equilibrium(self.penalties, values, z, depths, pushes)
         return (
             solved.system
             if solved.converged
@@ -280,10 +293,7 @@ class March:
             if contact.closed and contact.predicted_forces(predicted).sum() <= 0.0
         ):
             remaining = {pair: penalty for pair, penalty in self.penalties.items() if pair is not contact.pair}
-            solved = equilibrium(
-                self.model, self.settings, remaining, values, self.system.z, self.acting, self.depths(), self.pushes()
-            )
-            self.iterations += solved.iterations
+            solved = self._equilibrium(remaining, values, self.system.z, self.depths(), self.pushes())
             if solved.converged and zones_of(self.model, contact.pair, solved.system.z).least >= 0.0:
                 z = solved.system.z
                 return assemble(self.model, self.penalties, self.settings.quadrature, values, z, self.acting)
@@ -666,10 +676,7 @@ class March:
         }
         if looser == self.penalties:
             return False
-        solved = equilibrium(
-            self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
-        )
-        self.iterations += solved.iterations
+        solved = self._equilibrium(looser, self.values, self.system.z, self.depths(), self.pushes())
         if not solved.converged or _too_deep(self.model, solved.system) or self._overlaps_more(solved.system):
             return False
         contact_lost = self._passed_rigid_body(solved.system) or self.slip_failure(solved.system, "") is not None
@@ -742,10 +749,7 @@ class March:
         penalties = {other if key == pair else key: penalty for key, penalty in self.penalties.items()}
         depths = {other if key == pair else key: depth for key, depth in self.depths().items()}
         pushes = {key: push for key, push in self.pushes().items() if key != pair}
-        solved = equilibrium(
-            self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
-        )
-        self.iterations += solved.iterations
+        solved = self._equilibrium(penalties, self.values, self.system.z, depths, pushes)
         if not solved.converged or self.largest_motion(solved.system, self.system.z) > _MAX_CORRECTION:
             return None
         return solved.system, penalties
@@ -801,9 +805,13 @@ class March:
             z = with_predicted_depths(
                 self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known
             )
-            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held_depths, pushes)
-            self.iterations += solved.iterations
-            near = solved.converged and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
+            solved = self._equilibrium(tighter, self.values, z, held_depths, pushes)
+            # under a soft contact a strut is straight: a stiffer contact must not jump over the bent states
+            near = (
+                solved.converged
+                and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
+                and (all_positive(self.model, solved.system) or not self.is_minimum)
+            )
             if near and not self._passed_rigid_body(solved.system):
                 falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
@@ -893,10 +901,7 @@ class March:
         )
         system = self.system
         if float(np.abs(system.residual).max()) > max(settings.residual * system.scale, system.floor):
-            solved = equilibrium(
-                self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
-            )
-            self.iterations += solved.iterations
+            solved = self._equilibrium(self.penalties, self.values, system.z, self.depths(), self.pushes(), settings)
             if solved.converged and self.largest_motion(solved.system, system.z) <= _FINE_RESIDUAL:
                 self.system = solved.system
 

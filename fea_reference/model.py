@@ -36,19 +36,17 @@ from cprbm_scene.statement import (
 )
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
-from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
+from fea_reference.element import Chords, ElementForces, Elements, chords, forces, reference
 from fea_reference.hermite import Index, NeutralLine, chord_speed_excess
 from fea_reference.known import Memory
-from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
+from fea_reference.leaning import TANGENTS, Chain, Lean, Span, places, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
-from fea_reference.state import Complex, State
+from fea_reference.state import State
 from fea_reference.stops import StopPart, stops_of
-from fea_reference.touch import Contact, Penalty, Touch
 from fea_reference.upright import shear_layers
-from fea_reference.zones import Survey, Zones
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # Gauss points per element: the neutral line is a cubic there
 
@@ -207,23 +205,6 @@ class DrivePart:
     direction: Array | None
     unit: float
 
-    def motion(self, X: Array) -> float:
-        """The prescribed motion as a function of the body's (X, Y, φ)."""
-        if self.direction is None:
-            return float(X[2])
-        return float(self.direction @ (X[:2] + turned(self.arm, X[2]) - self.arm))
-
-    def gradient(self, phi: float) -> Array:
-        """Derivative of the motion by (X, Y, φ)."""
-        if self.direction is None:
-            return np.array([0.0, 0.0, 1.0])
-        arm = turned(self.arm, phi)
-        return np.array([*self.direction, arm[0] * self.direction[1] - arm[1] * self.direction[0]])
-
-    def second(self, phi: float) -> float:
-        """Second derivative of the motion by φ, the only nonzero second derivative."""
-        return 0.0 if self.direction is None else -float(self.direction @ turned(self.arm, phi))
-
 
 @dataclass(frozen=True, slots=True)
 class ApartPart:
@@ -252,10 +233,9 @@ class Model:
     ``guides`` are rows of drives with the constant value zero, and ``apart`` the ends to be assembled. ``stiffest``
     is the largest 12 EI/h² of the elements, and ``moving`` are the motions among the unknowns.
 
-    Memories of results by state: ``bends`` element forces, ``lines`` neutral lines by beam, ``discs`` bounding discs
-    and ``distances`` their distances from edges (:mod:`fea_reference.far`), ``surveys`` gaps of beams, ``overlaps``
-    zones of contacts, ``leads`` zones on rigid bodies with a lead and their corners, ``touches`` evaluated contacts,
-    ``loaded`` initial places of loads on beams.
+    ``spans`` are the beams' elements by name.
+
+    ``known`` remembers results by state.
     """
 
     units: Units
@@ -277,17 +257,8 @@ class Model:
     stiffest: float
     moving: Index
     patterns: Patterns = field(repr=False)
-    bends: Memory[None, ElementForces] = field(default_factory=Memory, repr=False)
-    lines: Memory[str | tuple[str, bytes], NeutralLine] = field(default_factory=Memory, repr=False)
-    discs: Memory[str, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
-    distances: Memory[Contact, tuple[Complex, Array]] = field(default_factory=Memory, repr=False)
-    surveys: Memory[tuple[Contact, float], Survey] = field(default_factory=Memory, repr=False)
-    overlaps: Memory[Contact, Zones] = field(default_factory=Memory, repr=False)
-    leads: Memory[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(
-        default_factory=Memory, repr=False
-    )
-    touches: Memory[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Memory, repr=False)
-    loaded: Memory[str, Array] = field(default_factory=Memory, repr=False)
+    spans: dict[str, Span] = field(repr=False)
+    known: Memory = field(default_factory=Memory, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
@@ -313,16 +284,23 @@ class Model:
         """The beam of the given name."""
         return next(beam for beam in self.beams if beam.name == name)
 
+    def chords(self, z: State) -> Chords:
+        """Chords of all elements in state ``z``."""
+        return self.known.recall(z, "chords", lambda: chords(self.elements, self.element_dofs, z))
+
     def bend(self, z: State) -> ElementForces:
         """Forces, stiffness and energy of all elements in state ``z``."""
-        return self.bends.recall(z, None, lambda: forces(self.elements, self.element_dofs, z))
+        return self.known.recall(
+            z, "forces", lambda: forces(self.elements, self.chords(z), z.values[self.element_dofs[6]])
+        )
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
-        return self.lines.recall(z, beam.name, lambda: self._line(beam, z))
+        return self.known.recall(z, ("line", beam.name), lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
-        return self._through(beam, tangent_angles(self.elements, self._span(beam), z), z)
+        theta = z.values[self.node_dofs[2, beam.nodes]]
+        return self._through(beam, tangent_angles(self.spans[beam.name], theta, self.chords(z).shear[beam.elements]), z)
 
     def line_of_sections(self, beam: BeamPart, z: State) -> NeutralLine:
         """The neutral line with the sections' rotations as tangents, without the shear angle."""
@@ -345,42 +323,35 @@ class Model:
         The result is a line of 2 k − 1 elements, of which only 0, 2, … 2 k − 2 have a meaning. The speed l (1 + (ψ₂ −
         ψ₁)²/16) of the chord replaces the speed from the axial force.
         """
-        return self.lines.recall(z, (beam.name, e.tobytes()), lambda: self._separate_line(beam, e, z))
+        return self.known.recall(z, ("line", beam.name, e.tobytes()), lambda: self._separate_line(beam, e, z))
 
     def _separate_line(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         nodes = np.stack([e, e + 1], axis=1).ravel()
         dofs = self.node_dofs[:, beam.nodes][:, nodes]
-        gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
+        gamma = self.chords(z).shear[beam.elements][e]
         angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
         dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
         excess, *_ = chord_speed_excess(np.hypot(dx, dy), lengths, np.diff(angles))
         return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, excess)
 
     def separate_chain(self, beam: BeamPart, e: Index, z: State) -> Chain:
-        """Chain rule from the elements (k,) of :meth:`apart_at_nodes` to the unknowns."""
-        return sheared_chain(self.elements, self._span(beam), e, z)
+        """Chain rule from the elements (k,) of :meth:`separate_elements` to the unknowns."""
+        span, all_of_own = self.spans[beam.name], np.ones(e.size)
+        leans = tuple(Lean(row, 0, span.part.start + e, all_of_own) for row in TANGENTS) if span.slips else ()
+        return Chain(span.dofs[:, e], leans, ((0, 0, e),), self.chords(z))
 
-    def chain(self, places: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
+    def chain(self, on: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
         """Chain rule from line elements (k,) of beams, and a ``body``'s three unknowns, to the unknowns."""
-        k = places[0][1].size
-        moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
-        return chain(self.elements, tuple((self._span(beam), e) for beam, e in places), moved, z)
+        spans, elements = tuple(self.spans[beam.name] for beam, _ in on), tuple(e.tobytes() for _, e in on)
+        return Chain(*places(spans, elements, () if body is None else tuple(body.tolist())), self.chords(z))
 
-    def chain_of_sections(self, beam: BeamPart, e: Index) -> Chain:
+    def chain_of_sections(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from :meth:`line_of_sections` to the unknowns, at elements (k,) of a beam."""
-        return own_chain(self._span(beam), e)
+        return Chain(self.spans[beam.name].dofs[:, e], (), ((0, 0, e),), self.chords(z))
 
-    def sheared(self, beam: BeamPart, e: Index, z: State) -> tuple[Array, Shear]:
-        """Shear angles (k,) of elements (k,) of a beam, and their derivatives by the nodes' six unknowns."""
-        span = self._span(beam)
-        gamma = shear_angle(self.elements, span.part, span.dofs, z)[e]
-        return gamma, shear(self.elements, span.part.start + e, span.dofs[:, e], z)
-
-    def _span(self, beam: BeamPart) -> Span:
-        own = {stop.end for stop in self.stops if stop.owner}
-        ends = (("start", beam.record.start), ("end", beam.record.end))
-        welded = tuple(isinstance(end, WeldedEnd) or (beam.name, which) in own for which, end in ends)
-        return Span(beam.elements, self.element_dofs[:, beam.elements], (welded[0], welded[1]))
+    def spread(self, dofs: Index, values: Array) -> Array:
+        """The sum (size,) of ``values`` at unknowns ``dofs``, arrays of the same shape."""
+        return np.asarray(np.bincount(dofs.ravel(), values.ravel(), self.size), dtype=float)
 
     def body_state(self, body: BodyPart, z: State) -> Array:
         """(X, Y, φ) of a body, zero for a fixed body."""
@@ -538,6 +509,7 @@ def build(scene: Scene, settings: Settings) -> Model:
 
     start = np.zeros(size)
     start[node_dofs] = np.stack([nodes[:, 0], nodes[:, 1], angles])
+    element_dofs = np.asarray(basis.element_dofs, dtype=np.int64)
     return Model(
         units,
         tuple(beams),
@@ -551,14 +523,24 @@ def build(scene: Scene, settings: Settings) -> Model:
         tuple(apart),
         elements,
         node_dofs,
-        np.asarray(basis.element_dofs, dtype=np.int64),
+        element_dofs,
         np.arange(first_row, size),
         size,
         State.of(start),
         max(12.0 * beam.stiffest / float(elements.length[beam.elements.start]) ** 2 for beam in beams),
         np.concatenate([node_dofs.ravel(), *(body.dofs for body in bodies if body.dofs is not None)]),
         Patterns(size),
+        {part.name: _span(part, stops, elements, element_dofs) for part in beams},
     )
+
+
+def _span(beam: BeamPart, stops: Sequence[StopPart], elements: Elements, dofs: Index) -> Span:
+    """The elements of a beam."""
+    own = {stop.end for stop in stops if stop.owner}
+    ends = (("start", beam.record.start), ("end", beam.record.end))
+    start, end = (isinstance(end, WeldedEnd) or (beam.name, which) in own for which, end in ends)
+    slips = bool(elements.slip[:, beam.elements].any())
+    return Span(beam.elements, dofs[:, beam.elements], (start, end), slips)
 
 
 def _on_beam(

@@ -186,4 +186,4 @@ def _line_searched(
     def slope(there: System) -> float:
         return float(motions @ there.residual)
 
-    return line_search(after, slope, float(motions @ (system.residual + system.tangent @ forces)))
+    return line_search(after, slope, float(motions @ (system.residual + system.tangent.matrix @ forces)))

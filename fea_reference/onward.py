@@ -48,9 +48,8 @@ def path_tangent(
             continue  # beside an end jointed to the edge every place is near
         near = Penalty(penalties[contact.pair].stiffness, _LEAD * contact.pair.scale)
         there = touch(model, contact.pair, near, quadrature, system.z)
-        gradient = np.zeros(model.size)
         if there.stiffness.any():
-            np.add.at(gradient, there.dofs, there.mean)
+            gradient = model.spread(there.dofs, there.mean)
             opened = system.solve(gradient)
             if opened is not None and sense * float(gradient @ rate) < 0.0:
                 new_contacts.append((there, gradient, opened))

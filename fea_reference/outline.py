@@ -111,7 +111,7 @@ class HalfPlane:
             np.zeros(k, dtype=bool),
         )
 
-    def exact_distance(self, y: Array, rest: Array) -> Array:
+    def exact_distance(self, y: Array, rest: Array, _near: Near) -> Array:
         """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation."""
         return _across(self.normal[:, None], y, rest, self.point[:, None])
 
@@ -187,9 +187,9 @@ class Broken:
             corner,
         )
 
-    def exact_distance(self, y: Array, rest: Array) -> Array:
-        """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation."""
-        near, (side, t, _) = self.near(y), self._closest_side(y)
+    def exact_distance(self, y: Array, rest: Array, near: Near) -> Array:
+        """d (k,) of points ``y`` + ``rest`` (2, k), without cancellation, from data at ``y``."""
+        side, t, _ = self._closest_side(y)
         tangents, first, _, _ = self._sides
         begins = first.take(side, axis=1)
         away, more = summed(y, -(begins + t * tangents.take(side, axis=1)))
@@ -346,9 +346,8 @@ class Graph:
                 bend = np.where(nearer, 0.0, bend)
         return Near(distance, normal, bend, past & ~behind)
 
-    def exact_distance(self, y: Array, rest: Array) -> Array:
-        """d (k,) of points ``y`` + ``rest`` (2, k), up to round-off of the points of the edge."""
-        near = self.near(y)
+    def exact_distance(self, _y: Array, rest: Array, near: Near) -> Array:
+        """d (k,) of points ``y`` + ``rest`` (2, k), up to round-off of the points of the edge, from data at ``y``."""
         return np.asarray(near.distance + (near.normal * rest).sum(axis=0))
 
     def _nearest(self, y: Array) -> Array:

@@ -96,8 +96,7 @@ def with_predicted_depths(
 
 def _opening(model: Model, system: System, contact: Touch) -> Array | None:
     """v (size,); None where the opening needs large motions."""
-    c = np.zeros(model.size)
-    np.add.at(c, contact.dofs, contact.mean)
+    c = model.spread(contact.dofs, contact.mean)
     v = system.solve(c)
     if v is None:
         return None

@@ -16,9 +16,9 @@ beam and keeps pressing.
 import numpy as np
 
 from cprbm_scene.answer import Array
-from fea_reference.hermite import NeutralLine
+from fea_reference.hermite import NeutralLine, as_complex
 from fea_reference.model import Model
-from fea_reference.projection import project
+from fea_reference.projection import closest
 from fea_reference.state import State
 from fea_reference.touch import Pair, Touch
 
@@ -53,7 +53,7 @@ def passed_end(model: Model, contact: Touch, before: State, after: State) -> boo
 
 def arc_length_at(line: NeutralLine, x: Array, near: float) -> float:
     """s_m of a point ``x`` (2, 1) on a neutral line, with the initial guess ``near`` of the closest place."""
-    zeta = project(line, x, np.array([near]))[0]
+    zeta = closest(line, as_complex(x), np.array([near]))[0]
     arcs = np.append(0.0, np.cumsum(line.lengths))
     there, ahead, _ = line.at(zeta)
     along = float(((x - there) * ahead).sum() / np.hypot(*ahead[:, 0]))

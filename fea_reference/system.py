@@ -4,7 +4,7 @@ The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z)
 tangent is the second derivative, symmetric and indefinite.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,11 +18,11 @@ from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces
-from fea_reference.model import MOMENTS, WAY, DrivePart, Model, OnBeam, SharePart, turned
+from fea_reference.model import MOMENTS, DrivePart, Model, OnBeam, SharePart, turned
 from fea_reference.outline import Graph
 from fea_reference.pattern import Block, Single
+from fea_reference.rigid import rigid
 from fea_reference.state import State
-from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 
 NOTHING = 10.0
@@ -31,6 +31,26 @@ NOTHING = 10.0
 _ROUND_OFF = 3.0  # measured: up to two for 20 to 1280 elements, in both parts of the floor
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """Tangent of a system, assembled and factorised where needed."""
+
+    assembled: Callable[[], csc_matrix]
+
+    @cached_property
+    def matrix(self) -> csc_matrix:
+        """The sparse matrix (size, size)."""
+        return self.assembled()
+
+    @cached_property
+    def factors(self) -> SuperLU | None:
+        """LU factors; None for a singular matrix."""
+        try:
+            return factors(self.matrix)
+        except RuntimeError:  # exactly singular
+            return None
 
 
 @dataclass(frozen=True)
@@ -51,7 +71,7 @@ class System:
     z: State
     acting: Acting
     residual: Array
-    tangent: csc_matrix
+    tangent: Tangent
     elements: ElementForces
     touches: tuple[Touch, ...]
     loads: tuple[BeamLoad, ...]
@@ -61,15 +81,9 @@ class System:
 
     def solve(self, right: Array) -> Array | None:
         """Solution (size,) of the tangent's equations for ``right`` (size,); None for a singular tangent."""
-        solution = None if self._factors is None else self._factors.solve(right)
+        factors_here = self.tangent.factors
+        solution = None if factors_here is None else factors_here.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
-
-    @cached_property
-    def _factors(self) -> SuperLU | None:
-        try:
-            return factors(self.tangent)
-        except RuntimeError:  # exactly singular
-            return None
 
 
 def factors(matrix: csc_matrix) -> SuperLU:
@@ -94,7 +108,8 @@ def with_stiffness_factor(model: Model, system: System, contact: Touch, factor: 
     change = replace(contact, stiffness=factor * contact.stiffness).hessian(contact.pushes) - contact.hessian(
         contact.pushes
     )
-    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(contact.dofs, change)]))
+    changed = system.tangent.matrix + model.patterns.matrix([Block(contact.dofs, change)])
+    return replace(system, tangent=Tangent(lambda: changed))
 
 
 def assemble(
@@ -154,13 +169,10 @@ def _assembled(
 ) -> System:
     """The system with contacts of a given round-off."""
     elements = model.bend(z)
-    residual, rigid = _rigid(model, values, z, acting)
+    residual, rigid_entries = rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
-    entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
     pressing = [(contact, contact.gradient) for contact in touches if contact.closed]
-    for contact, gradient in pressing:
-        parts.append((contact.dofs, gradient))
-        entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
+    parts += [(contact.dofs, gradient) for contact, gradient in pressing]
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
@@ -168,14 +180,21 @@ def _assembled(
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))
-        entries.append(Block(load.dofs, -load.hessian))
     for dofs, gradient in parts:
-        residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
+        residual += model.spread(dofs, gradient)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
-        unknowns = np.arange(model.size)
-        entries.append(Single(unknowns, unknowns, drag.weights))
-    tangent = model.patterns.matrix(entries)
+
+    def tangent() -> csc_matrix:
+        entries: list[Block | Single] = [rigid_entries, Block(model.element_dofs, elements.hessian())]
+        for contact, _ in pressing:
+            entries.append(Block(contact.dofs, contact.hessian(_pushes(contact, predicted.get(contact.pair)))))
+        entries += [Block(load.dofs, -load.hessian) for load in loads]
+        if drag is not None:
+            unknowns = np.arange(model.size)
+            entries.append(Single(unknowns, unknowns, drag.weights))
+        return model.patterns.matrix(entries)
+
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
     balanced += [abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart]
@@ -185,7 +204,16 @@ def _assembled(
     floor += rounded
     significant = largest > NOTHING * floor
     return System(
-        z, acting, residual, tangent, elements, touches, loads, largest if significant else 1.0, floor, significant
+        z,
+        acting,
+        residual,
+        Tangent(tangent),
+        elements,
+        touches,
+        loads,
+        largest if significant else 1.0,
+        floor,
+        significant,
     )
 
 
@@ -218,8 +246,8 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
         lengths = h
     else:
         lengths = 1.0 if isinstance(pair.outline, Graph) else h + pair.edge.farthest
-    widest = h * float(np.diff(touch.zones.intervals, axis=1).max(initial=0.0))
-    return float(np.finfo(float).eps) * stiffness * widest * lengths
+    widest = h * float((touch.zones.intervals[:, 1] - touch.zones.intervals[:, 0]).max(initial=0.0))
+    return 2.0**-52 * stiffness * widest * lengths
 
 
 def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
@@ -250,116 +278,3 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     arm = turned(part.arm, z[body.dofs[2]])
     f[body.dofs] = [*part.direction, arm[0] * part.direction[1] - arm[1] * part.direction[0]]
     return f
-
-
-def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Single]:
-    """Residual and tangent of joints, hinges, guides, drives, stops and loads on bodies, assembled one at a time."""
-    residual = np.zeros(model.size)
-    ways: dict[int, Array] = {}
-    if acting.ways is not None:
-        share = values[model.stepped.index(WAY)] if model.apart else 1.0
-        for end, way in zip(model.apart, acting.ways, strict=True):
-            ways[int(end.joint.rows[0])] = (1.0 - share) * way
-    rows: list[int] = []
-    columns: list[int] = []
-    entries: list[float] = []
-
-    def couple(i: int, j: int, value: float) -> None:
-        rows.extend((i, j))
-        columns.extend((j, i))
-        entries.extend((value, value))
-
-    def vanish(row: int) -> None:
-        residual[row] = z.values[row]
-        rows.append(row)
-        columns.append(row)
-        entries.append(1.0)
-
-    for joint in model.joints:
-        if model.free(joint, acting):
-            for row in joint.rows:
-                vanish(int(row))
-            continue
-        body = model.bodies[joint.body]
-        X, Y, phi = model.body_state(body, z)
-        arm = turned(joint.arm, phi)
-        gap = z[joint.dofs[:2]] - body.centre - (X, Y) - arm + z.rest[joint.dofs[:2]]
-        gap -= ways.get(int(joint.rows[0]), np.zeros(2))
-        across = (-arm[1], arm[0])  # ∂(R r)/∂φ
-        for i in range(2):
-            row, multiplier = int(joint.rows[i]), z[joint.rows[i]]
-            residual[row] += gap[i]
-            residual[joint.dofs[i]] += multiplier
-            couple(row, int(joint.dofs[i]), 1.0)
-            if body.dofs is not None:
-                residual[body.dofs[i]] -= multiplier
-                residual[body.dofs[2]] -= multiplier * across[i]
-                couple(row, int(body.dofs[i]), -1.0)
-                couple(row, int(body.dofs[2]), -across[i])
-                rows.append(int(body.dofs[2]))
-                columns.append(int(body.dofs[2]))
-                entries.append(multiplier * arm[i])
-        if joint.rows.size == 3:
-            row, multiplier = int(joint.rows[2]), z[joint.rows[2]]
-            residual[row] += z[joint.dofs[2]] - phi - joint.angle + z.rest[joint.dofs[2]]
-            residual[joint.dofs[2]] += multiplier
-            couple(row, int(joint.dofs[2]), 1.0)
-            if body.dofs is not None:
-                residual[body.dofs[2]] -= multiplier
-                couple(row, int(body.dofs[2]), -1.0)
-    for hinge in model.hinges:
-        for i, r, sign in zip(hinge.bodies, hinge.arms, (1.0, -1.0), strict=True):
-            body = model.bodies[i]
-            residual[hinge.rows] += sign * model.carried(body, r, z)
-            if body.dofs is None:
-                continue
-            pull = sign * z[hinge.rows]
-            r = turned(r, z[body.dofs[2]])
-            lever = np.array([-r[1], r[0]])  # ∂(R r)/∂φ
-            residual[hinge.rows] += sign * z.rest[body.dofs[:2]]
-            residual[body.dofs[:2]] += pull
-            residual[body.dofs[2]] += pull @ lever
-            for axis in range(2):
-                couple(int(hinge.rows[axis]), int(body.dofs[axis]), sign)
-                couple(int(hinge.rows[axis]), int(body.dofs[2]), sign * lever[axis])
-            rows.append(int(body.dofs[2]))
-            columns.append(int(body.dofs[2]))
-            entries.append(-float(pull @ r))
-    acting_loads, prescribed, _ = np.split(values, np.cumsum([len(model.loads), len(model.drives)]))
-    rests = np.zeros(len(model.guides))
-    for hold, value in zip((*model.guides, *model.drives), (*rests, *prescribed), strict=True):
-        dofs, multiplier = model.bodies[hold.body].dofs, float(z.values[hold.row])
-        assert dofs is not None
-        phi = float(z[dofs[2]])
-        gradient = hold.gradient(phi)
-        residual[hold.row] += hold.motion(z[dofs]) - value
-        residual[dofs] += multiplier * gradient
-        for dof, slope in zip(dofs, gradient, strict=True):
-            couple(hold.row, int(dof), float(slope))
-        rows.append(int(dofs[2]))
-        columns.append(int(dofs[2]))
-        entries.append(multiplier * hold.second(phi))
-    if model.apart:
-        moments = model.stepped.index(MOMENTS)
-        residual -= values[moments] * load_direction(model, moments, z, acting)
-    for stop, limit in acting_stops(model.stops, acting):
-        multiplier = float(z.values[stop.row])
-        residual[stop.row] += stop.angle(z) - limit
-        residual[stop.theta] += multiplier
-        couple(stop.row, stop.theta, 1.0)
-        if stop.phi is not None:
-            residual[stop.phi] -= multiplier
-            couple(stop.row, stop.phi, -1.0)
-    for stop in model.stops:
-        if stop.name not in acting.limits:
-            vanish(stop.row)
-    for i, (part, value) in enumerate(zip(model.loads, acting_loads, strict=True)):
-        if isinstance(part, OnBeam):
-            continue
-        residual -= value * load_direction(model, i, z, acting)
-        dofs = model.bodies[part.body].dofs
-        if part.direction is not None and dofs is not None:
-            rows.append(int(dofs[2]))
-            columns.append(int(dofs[2]))
-            entries.append(value * float(turned(part.arm, z[dofs[2]]) @ part.direction))
-    return residual, Single(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64), np.array(entries))

@@ -74,7 +74,7 @@ def _tangent_beyond(branch: Branch, there: BranchPoint) -> Array | None:
     f = load_direction(branch.model, branch.load, there.system.z, there.system.acting)
     along = branch.weights * there.way
     try:
-        solution = splu(bordered(there.system.tangent, along, along, 0.0)).solve(np.append(f, 0.0))
+        solution = splu(bordered(there.system.tangent.matrix, along, along, 0.0)).solve(np.append(f, 0.0))
     except RuntimeError:  # exactly singular
         return None
     return solution[:-1] if np.isfinite(solution).all() else None

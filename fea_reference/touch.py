@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -10,7 +11,7 @@ import numpy as np
 from cprbm_scene.answer import Array, frozen_array
 from fea_reference.edge import Edge
 from fea_reference.facing import Facing, Tapers, facing
-from fea_reference.hermite import Index, NeutralLine
+from fea_reference.hermite import Around, Index, NeutralLine
 from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
@@ -71,9 +72,9 @@ class Pair:
     roles: Roles | None = None
     tapers: Tapers | None = None
 
-    def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
-        """Sides (k,) at places ``zeta`` (k,) and ``zeta_m`` (k,), with ``d`` (k,) = n·(x − x_m)."""
-        return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
+    def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array | float:
+        """Sides (k,), or of all places, at ``zeta`` (k,) and ``zeta_m`` (k,), with ``d`` (k,) = n·(x − x_m)."""
+        return self.side if self.roles is None else self.roles.sides(zeta, zeta_m, d)
 
     def places_facing(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
         """Places of the second beam facing ``zeta`` (k,) of the first, with initial guesses ``guess`` (k,)."""
@@ -197,6 +198,7 @@ LACKING = 1e-3
 """Share of a zone's force: largest missing force at the zone's end."""
 
 Rigid = Circle | Face
+Places = tuple[Array, Around, Array]
 Contact = Pair | Rigid
 
 
@@ -219,8 +221,8 @@ class Touch:
 
     ``stiffness`` (k,) is the penalty times the length of a point, and ``gap`` (k,) the gap minus the lead. ``gap_by``
     (m, k) and ``gap_by_twice`` (m, m, k) are the gap's derivatives by the unknowns of the first line, then of the
-    second or a moving body. ``chain`` continues to all unknowns, at c = k/points_per_place places, as
-    ``points_per_place`` consecutive points lie in the same elements.
+    second or a moving body, evaluated at the first call. ``chain`` continues to all unknowns, at c =
+    k/points_per_place places, as ``points_per_place`` consecutive points lie in the same elements.
 
     ``zeta`` (k,) and ``zeta_m`` (k,) are places on the first and second beam, the latter empty for a rigid body.
     ``x`` and ``x_m`` (2, k) are points of the first neutral line and of the second or the edge. ``normal`` (2, k)
@@ -237,8 +239,8 @@ class Touch:
     points_per_place: int
     stiffness: Array
     gap: Array
-    gap_by: Array
-    gap_by_twice: Array
+    gap_by: Callable[[], Array]
+    gap_by_twice: Callable[[], Array]
     zeta: Array
     zeta_m: Array
     x: Array
@@ -246,7 +248,7 @@ class Touch:
     normal: Array
     missing: float = 0.0
     missing_share: float = 0.0
-    extra_hessian: Array | None = None
+    extra_hessian: Callable[[], Array] | None = None
     sharp: bool = False
 
     @property
@@ -267,24 +269,26 @@ class Touch:
     @property
     def gradient(self) -> Array:
         """Derivative (M, c) of the contact energy by the unknowns."""
-        return self.chain.gradient(self._summed(-self.pushes * self.gap_by))
+        return self.chain.gradient(self._summed(-self.pushes * self.gap_by()))
 
     @property
     def mean(self) -> Array:
         """Derivative (M, c) of the stiffness-weighted mean gap by the unknowns."""
-        return self.chain.gradient(self._summed(self.stiffness / self.stiffness.sum() * self.gap_by))
+        return self.chain.gradient(self._summed(self.stiffness / self.stiffness.sum() * self.gap_by()))
 
     def hessian(self, pushes: Array) -> Array:
         """Second derivative (M, M, c) of the contact energy by the unknowns, for point forces ``pushes`` (k,)."""
-        local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
+        by = self.gap_by()
+        local = (self.stiffness * by)[:, None] * by - pushes * self.gap_by_twice()
         if self.extra_hessian is not None:
-            local += self.extra_hessian
-        return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
+            local += self.extra_hessian()
+        return self.chain.hessian(self._summed(local), self._summed(-pushes * by))
 
     def predicted_forces(self, step: Array) -> Array:
         """Point forces (k,) after a ``step`` (size,) of the unknowns, to first order."""
-        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.points_per_place, axis=1)
-        return np.asarray(self.pushes - self.stiffness * (self.gap_by * local).sum(axis=0))
+        by = self.gap_by()
+        local = np.repeat(self.chain.local(step, len(by)), self.points_per_place, axis=1)
+        return np.asarray(self.pushes - self.stiffness * (by * local).sum(axis=0))
 
     def _summed(self, at_points: Array) -> Array:
         return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.points_per_place).sum(axis=-1))
@@ -310,6 +314,15 @@ def gauss(points: int) -> tuple[Array, Array]:
     """Gauss points in [−1, 1] and weights, (points,) both."""
     places, weights = np.polynomial.legendre.leggauss(points)
     return frozen_array(places), frozen_array(weights)
+
+
+def gauss_places(zones: Zones, line: NeutralLine, quadrature: int) -> Places:
+    """Gauss points ζ (k,) of all intervals, the line there, and their arc lengths (k,)."""
+    points, weights = gauss(quadrature)
+    half = 0.5 * (zones.intervals[:, 1:] - zones.intervals[:, :1])
+    zeta = (zones.intervals[:, :1] + half * (points + 1.0)).ravel()
+    there = line.around(zeta)
+    return zeta, there, (half * weights).ravel() * line.lengths[there.element]
 
 
 def count_points_per_place(quadrature: int, *elements: Index) -> int:

@@ -86,9 +86,7 @@ def penetration_effects(
     groups = _determinate_groups(pressing)
     effects = {}
     for contact in sinking:
-        right = np.zeros(model.size)
-        np.add.at(right, contact.dofs, -contact.gradient)
-        response = system.solve(right)
+        response = system.solve(model.spread(contact.dofs, -contact.gradient))
         if response is None:
             continue
         response *= _FALLS[contact.sharp]
@@ -152,8 +150,7 @@ def _open_contacts(
         there = touch(model, pair, Penalty(pair.stiffness, gap + _BESIDE * pair.measure), quadrature, system.z)
         if not there.closed or _beside_joint(there):
             continue
-        opening = np.zeros(model.size)
-        np.add.at(opening, there.dofs, there.mean)
+        opening = model.spread(there.dofs, there.mean)
         opened = system.solve(opening)
         if opened is not None and (compliance := float(opening @ opened)) > 0.0:
             contacts.append((gap, opening, compliance))

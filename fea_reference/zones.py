@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ from cprbm_scene.answer import Array
 from fea_reference.facing import Borders, Tapers, borders, facing
 from fea_reference.hermite import NeutralLine, line_difference
 from fea_reference.neighbours import near_each_other, nearest
-from fea_reference.projection import project
+from fea_reference.projection import closest
 
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
@@ -47,11 +48,11 @@ _BENT = 0.5
 _SHORT = 1e-4  # elements: steps with a negligible third power
 _TURNS = 1e-4  # elements: last step of a search for a minimum, where the gap changes with the square of the error
 _WITHIN = 1e-9  # share of an interval: far narrower zones begin at a minimum of the gap
+_EPS = float(np.finfo(float).eps)
 _EVEN = 3.0  # times the mean slope: a cubic with smaller end slopes is monotonic
 
 
-@dataclass(frozen=True, slots=True)
-class Gap:
+class Gap(NamedTuple):
     """g, g', g'' by ζ and ζ_m at places (k,); ``found`` (k,) is True where a closest point exists."""
 
     g: Array
@@ -60,15 +61,10 @@ class Gap:
     zeta_m: Array
     found: NDArray[np.bool_]
 
-    @property
-    def rows(self) -> tuple[Array, Array, Array, Array]:
-        """The rows g, g', g'' and ζ_m, without ``found``."""
-        return self.g, self.slope, self.curvature, self.zeta_m
-
     def chosen(self, selection: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
         """The gap at a selection of the places."""
-        g, slope, curvature, zeta_m = (row[selection] for row in self.rows)
-        return Gap(g, slope, curvature, zeta_m, self.found[selection])
+        g, slope, curvature, zeta_m, found = self
+        return Gap(g[selection], slope[selection], curvature[selection], zeta_m[selection], found[selection])
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,31 +95,25 @@ class Survey:
             return no_zones(self.least)
         zeta, neighbours, there = self.zeta, self.neighbours, self.there
         g, zeta_m = there.g - level, there.zeta_m
-
-        def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array, Array]:
-            gap_there = self.at(where, guess)
-            return gap_there.g - level, gap_there.slope, gap_there.curvature, gap_there.zeta_m
-
-        ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
+        ends = (neighbours & (g[:-1] * g[1:] < 0.0)).nonzero()[0]
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
-            where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
+            where, guess = _roots(self.at, zeta, g, zeta_m, ends, share, level=level)
             new = np.array([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = _with_columns(np.array([zeta, g, zeta_m]), ends, new)
-            neighbours = _with_neighbours(neighbours, ends)
-        inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
+            (zeta, g, zeta_m), neighbours = _with_columns(np.array([zeta, g, zeta_m]), neighbours, ends, new)
+        here, there_next = g[:-1], g[1:]
+        inside = (neighbours & (np.maximum(here, there_next) <= 0.0) & (here + there_next < 0.0)).nonzero()[0]
+        if not inside.size:
+            return no_zones(self.least)
         # The gap is smooth within an element, so that adjacent parts form a single interval.
-        parted = zeta[inside] == np.floor(zeta[inside])
+        place = zeta[inside]
+        parted = place == np.floor(place)
         if self.kinks:
-            parted |= np.isin(zeta[inside], self.kinks)
-        begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | parted)
-        last = np.append(begins[1:], inside.size)[: begins.size] - 1
-        low, high = inside[begins], inside[last] + 1
-        intervals, closest_there = (
-            np.stack([zeta[low], zeta[high]], axis=1),
-            np.stack([zeta_m[low], zeta_m[high]], axis=1),
-        )
-        return Zones(intervals, closest_there, self.least)
+            parted |= np.isin(place, self.kinks)
+        parted[1:] |= inside[1:] - inside[:-1] > 1
+        begins = parted[1:].nonzero()[0] + 1
+        bounds = np.concatenate([inside[:1], inside[begins], inside[begins - 1] + 1, inside[-1:] + 1]).reshape(2, -1).T
+        return Zones(zeta[bounds], zeta_m[bounds], self.least)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +146,7 @@ class Zones:
 def gap(
     first: NeutralLine,
     second: NeutralLine,
-    sides: Callable[[Array, Array, Array], Array],
+    sides: Callable[[Array, Array, Array], Array | float],
     T: float,
     tapers: Tapers | None,
     zeta: Array,
@@ -178,8 +168,8 @@ def gap(
     d = (back * line_difference(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
-    bend = -a / np.where(faced.fixed, 1.0, J**2 - d * a)
-    if faced.fixed.any():
+    bend = -a / (J * J - d * a if faced.fixed is None else np.where(faced.fixed, 1.0, J * J - d * a))
+    if faced.fixed is not None:
         bend = np.where(faced.fixed, 1.0 / np.where(d == 0.0, 1.0, d), bend)
     curvature = (back * there.bent).real + bend * ahead.imag**2
     side = sides(zeta, zeta_m, d)
@@ -189,9 +179,9 @@ def gap(
     return Gap(g, slope, side * curvature, zeta_m, faced.found)
 
 
-def one_side(side: float) -> Callable[[Array, Array, Array], Array]:
+def one_side(side: float) -> Callable[[Array, Array, Array], float]:
     """Side function with a constant value."""
-    return lambda zeta, _zeta_m, _d: np.full(zeta.shape, side)
+    return lambda _zeta, _zeta_m, _d: side
 
 
 def side_of(first: NeutralLine, second: NeutralLine, unseen: float = 1.0) -> float:
@@ -220,9 +210,10 @@ def has_end_over(first: NeutralLine, second: NeutralLine) -> bool:
 def end_distance(first: NeutralLine, second: NeutralLine) -> float:
     """Distance of the nearer end of the first beam from the second; infinite without a closest point inside."""
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
-    zeta, found = project(second, first.points[:, [0, -1]], near)
+    zeta, found, there = closest(second, first.nodes[[0, -1]], near)
     over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
-    return float(np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))[over].min(initial=np.inf))
+    distance = np.abs(first.nodes[[0, -1]] - second.nodes[there.element] - there.way)
+    return float(distance[over].min(initial=np.inf))
 
 
 def survey_pair(
@@ -257,7 +248,7 @@ def survey_pair(
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
-    zeta = np.unique(np.clip(zeta, *free))
+    zeta = zeta if free == (0.0, np.inf) else np.unique(np.clip(zeta, *free))
     x = first.around(zeta)
     distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[nodes_second])
     near = np.flatnonzero(distance < reach)
@@ -288,7 +279,7 @@ def overlap(
 
 def gap_round_off(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Round-off of the gap of two beams."""
-    return float(np.finfo(float).eps * (abs(T) + first.longest + second.longest))
+    return _EPS * (abs(T) + first.longest + second.longest)
 
 
 def negative(
@@ -326,19 +317,14 @@ def survey(
     """
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     slope, zeta_m = there.slope, there.zeta_m
-
-    def slope_at(where: Array, guess: Array) -> tuple[Array, Array, None, Array]:
-        gap_there = at(where, guess)
-        return gap_there.slope, gap_there.curvature, None, gap_there.zeta_m
-
     # a maximum matters only between two places with negative gaps
     parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
-    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0) & parts)
+    turning = (neighbours & (slope[:-1] * slope[1:] < 0.0) & parts).nonzero()[0]
     if turning.size and kinks:
-        turning = turning[~_at_kinks(slope_at, zeta, slope, zeta_m, turning, kinks)]
+        turning = turning[~_at_kinks(at, zeta, slope, zeta_m, turning, kinks)]
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
-        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor, _TURNS)
+        where, guess = _roots(at, zeta, slope, zeta_m, turning, share, floor)
         zeta, there, neighbours = _with_places(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
     return Survey(at, zeta, there, neighbours, kinks, least)
@@ -348,28 +334,21 @@ def _with_places(
     zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, inserted: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """Places and gap with further places ``where``, inserted behind the places with index ``left``."""
-    rows = _with_columns(
-        np.array([zeta, *there.rows, there.found]), left, np.array([where, *inserted.rows, inserted.found])
-    )
+    rows, neighbours = _with_columns(np.array([zeta, *there]), neighbours, left, np.array([where, *inserted]))
     zeta, g, slope, curvature, zeta_m, found = rows
-    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _with_neighbours(neighbours, left)
+    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), neighbours
 
 
-def _with_columns(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
-    """``rows`` (r, k) with columns ``new`` (r, m) inserted behind the columns ``left`` (m,); (r, k+m)."""
-    old = np.ones(rows.shape[1] + left.size, dtype=bool)
-    at = left + np.arange(1, left.size + 1)
-    old[at] = False
-    both = np.empty((len(rows), old.size))
-    both[:, old], both[:, at] = rows, new
-    return both
+def _with_columns(
+    rows: Array, neighbours: NDArray[np.bool_], left: NDArray[np.int64], new: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """``rows`` (r, k) with columns ``new`` (r, m) behind the columns ``left`` (m,), and ``neighbours`` (k+m−1,).
 
-
-def _with_neighbours(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """``neighbours`` (k+m−1,) after the insertion of places behind ``left`` (m,), which all had a neighbour."""
-    times = np.ones(neighbours.size, dtype=np.int64)
-    times[left] = 2
-    return np.repeat(neighbours, times)
+    All columns ``left`` had a neighbour.
+    """
+    order = np.concatenate([np.arange(rows.shape[1]), left + 0.5]).argsort()
+    both = np.concatenate([neighbours, [False], neighbours[left]])
+    return np.concatenate([rows, new], axis=1)[:, order], both[order[:-1]]
 
 
 def _with_bends(
@@ -380,13 +359,13 @@ def _with_bends(
     The slope has the same sign at both, but the cubic through g and g' of both has two turning points; the new place
     is the second. A zone missed there would appear at its full width, and its force with a jump.
     """
-    width, slope = np.where(neighbours, np.diff(zeta), 1.0), there.slope
-    before, behind, rise = slope[:-1], slope[1:], np.diff(there.g) / width
+    width, slope = np.where(neighbours, zeta[1:] - zeta[:-1], 1.0), there.slope
+    before, behind, rise = slope[:-1], slope[1:], (there.g[1:] - there.g[:-1]) / width
     # g' = before + 2 b ξ + 3 a ξ², over the width
     b, a = 3.0 * rise - 2.0 * before - behind, before + behind - 2.0 * rise
     turned = -b / np.where(a == 0.0, 1.0, 3.0 * a)
     inside = (a != 0.0) & (turned > _INSIDE) & (turned < 1.0 - _INSIDE)
-    bends = np.flatnonzero(neighbours & (before * behind > 0.0) & (before * b < 0.0) & inside)
+    bends = (neighbours & (before * behind > 0.0) & (before * b < 0.0) & inside).nonzero()[0]
     if bends.size == 0:
         return zeta, there, neighbours
     share = turned[bends]
@@ -432,7 +411,7 @@ def _samples(
         off = ((first.nodes[there.element] - facing_to + there.way) * back).real
         step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
         moved = np.minimum(np.maximum(zeta - step, 0.0), first.n)
-        done = np.abs(moved - zeta).max() < 1e-8
+        done = np.maximum.reduce(np.abs(moved - zeta)) < 1e-8
         zeta = moved
         if done:
             break
@@ -446,10 +425,11 @@ def steps_within(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple
         Places (m,), and (m−1,) True if a place and the next belong to the same run of elements.
     """
     zeta = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT).ravel()
-    ends = elements[np.append(np.diff(elements) > 1, True)] + 1.0
+    gaps = (elements[1:] - elements[:-1] > 1).nonzero()[0]
     inner = [knot for knot in knots if knot != int(knot) and int(knot) in elements]
-    if ends.size == 1 and not inner:
-        return np.append(zeta, ends), np.ones(zeta.size, dtype=bool)
+    if not gaps.size and not inner:
+        return np.concatenate([zeta, elements[-1:] + 1.0]), np.ones(zeta.size, dtype=bool)
+    ends = np.concatenate([elements[gaps], elements[-1:]]) + 1.0
     zeta = np.union1d(zeta, np.concatenate([ends, inner]))
     return zeta, ~np.isin(zeta[:-1], ends) | np.isin(zeta[:-1], elements)
 
@@ -460,23 +440,23 @@ def no_zones(least: float) -> Zones:
 
 
 def _roots(
-    function: Callable[[Array, Array], tuple[Array, Array, Array | None, Array]],
+    at: Callable[[Array, Array], Gap],
     zeta: Array,
     values: Array,
     zeta_m: Array,
     left: NDArray[np.int64],
     share: Array,
     floor: float = 0.0,
-    arrived: float = _ARRIVED,
+    level: float | None = None,
 ) -> tuple[Array, Array]:
-    """Roots between the places ``left`` and the next, where ``values`` change sign, and their ζ_m.
+    """Places between ``left`` and the next with a gap of ``level`` or, without a level, a zero slope; and their ζ_m.
 
-    Newton's method, safeguarded by bisection, starts at the ``share`` of the interval. A step below ``arrived``
-    (elements) is the last. If a value times the bracket is below ``floor``, the integral of the function does not
-    change any more and any place is a root: slopes of beams that lie on a surface are pure round-off.
+    ``values`` change sign there. Newton's method, safeguarded by bisection, starts at the ``share`` of the interval.
+    If a value times the bracket is below ``floor``, the integral of the function does not change any more and any
+    place is a root: slopes of beams that lie on a surface are pure round-off.
 
-    If ``function`` returns its second derivative, a step leads to the zero of the osculating parabola. The difference
-    from the Newton step then bounds the error.
+    For a level a step leads to the zero of the osculating parabola. The difference from the Newton step then bounds
+    the error.
     """
     low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
@@ -486,30 +466,32 @@ def _roots(
     places, closest_there = x.copy(), guess.copy()
     sought = np.arange(x.size)
     for _ in range(_ITERATIONS):
-        f, df, bend, guess = function(x, guess)
+        g, slope, curvature, guess, _ = at(x, guess)
+        f, df = (slope, curvature) if level is None else (g - level, slope)
         below = f * rising < 0.0
-        low, high = np.where(below, x, low), np.where(below, high, x)
-        flat = df == 0.0
-        newton_step = -f / np.where(flat, 1.0, df)
+        np.copyto(low, x, where=below)
+        np.copyto(high, x, where=~below)
+        df = np.where(df == 0.0, np.nan, df)  # no Newton step where the function is flat
+        newton_step = -f / df
         newton = x + newton_step
-        if bend is not None:
-            correction = _to_parabola(newton_step, df, bend)
+        if level is not None:
+            correction = _to_parabola(newton_step, df, curvature)
             newton += correction
         # a step out of the bracket by round-off has converged; bisection would restart from afar
-        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
+        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED)
         moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
-        converged = np.abs(f) * (high - low) <= floor
-        step = np.where(converged, 0.0, moved - x)
+        step = moved - x
+        step[np.abs(f) * (high - low) <= floor] = 0.0
         x, guess = x + step, guess + pace * step
         size = np.abs(step)
-        if bend is not None:
+        if level is not None:
             size = np.where(good & (size < _SHORT) & (correction != 0.0), np.minimum(size, np.abs(correction)), size)
         # the error of the last step is of second or third order
-        going = size >= np.where(good, arrived, _ARRIVED)
+        going = size >= (np.where(good, _TURNS, _ARRIVED) if level is None else _ARRIVED)
         places[sought], closest_there[sought] = x, guess
-        if not going.any():
+        if not (count := np.count_nonzero(going)):
             break
-        if not going.all():
+        if count < going.size:
             sought = sought[going]
             low, high, x, guess, rising, pace = (array[going] for array in (low, high, x, guess, rising, pace))
     return places, closest_there
@@ -517,14 +499,14 @@ def _roots(
 
 def _to_parabola(newton_step: Array, slope: Array, bend: Array) -> Array:
     """Difference between the nearer zero of a parabola and the ``newton_step`` (k,); zero if it is not small."""
-    under = 1.0 + 2.0 * newton_step * bend / np.where(slope == 0.0, np.inf, slope)
+    under = 1.0 + 2.0 * newton_step * bend / slope
     return np.asarray(
         np.where(under > _BENT, newton_step * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0)
     )
 
 
 def _at_kinks(
-    slope_at: Callable[[Array, Array], tuple[Array, Array, Array | None, Array]],
+    at: Callable[[Array, Array], Gap],
     zeta: Array,
     slope: Array,
     zeta_m: Array,
@@ -541,8 +523,8 @@ def _at_kinks(
     for end, other, inwards in ((left, right, _ARRIVED), (right, left, -_ARRIVED)):
         beside = np.flatnonzero(wide & np.isin(zeta[end], kinks))
         if beside.size:
-            there, _, _, _ = slope_at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
-            at_kink[beside] |= there * slope[other[beside]] > 0.0
+            there = at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
+            at_kink[beside] |= there.slope * slope[other[beside]] > 0.0
     return at_kink
 
 
@@ -569,7 +551,7 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     a, b, c = 0.5 * curvature[inner] * width**2, direction * slope[inner] * width, g[inner]
     root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
     # stable form of (−b + root)/(2a)
-    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN, 1.0 - _WITHIN)
+    distance = np.minimum(np.maximum(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN), 1.0 - _WITHIN)
     return np.where(forward, distance, 1.0 - distance)
 
 

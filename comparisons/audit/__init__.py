@@ -47,7 +47,7 @@ def audit(scene: Scene, answer: Answer) -> Audit:
         if np.isfinite(np.concatenate([*numbers, forces.force.ravel(), forces.moment, forces.place.ravel()])).all():
             sound.append(state)
             complaints += [f"{where} {said}" for check in CHECKS for excess, said in check(state) if not excess <= 0.0]
-            unbalance = max(float(np.abs(state.unbalance(name)[1:-1]).max()) for name in state.beams)
+            unbalance = max(float(np.abs(state.unbalance(name)[1:-1]).max(initial=0.0)) for name in state.beams)
             unbalances.append((unbalance, unbalance / state.largest[1]))
         else:
             complaints.append(f"{where} a number is not finite")

@@ -195,7 +195,7 @@ def _fastest(measured: Session, clocked: Clocked) -> Table:
         ("error", "fastest", "times ahead", *labels.values()),
         rows,
         "Seconds, between two sizes by the straight line through the logarithms of error and time; a dash where no "
-        "measured size reaches the error for good. Times ahead: the next one's seconds over the fastest one's.",
+        "measured size reaches the error for good. Times ahead: seconds of the second method over the fastest.",
     )
 
 

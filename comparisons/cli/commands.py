@@ -6,7 +6,7 @@ tools stand in ``tests`` and ``benchmarks`` of a checkout, and the wheel has non
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
@@ -59,15 +59,11 @@ class ToolCommand(click.Command):
     """
 
     def __init__(self, tool: str) -> None:
-        record = TOOLS[tool]
-        super().__init__(tool.rpartition(" ")[2], help=record.purpose, hidden=bool(record.new_name))
+        super().__init__(tool.rpartition(" ")[2], help=TOOLS[tool][1])
         self.tool = tool
 
     def loaded(self) -> click.Command:
-        """The command of the tool; for an old name standard error states the new name."""
-        if new_name := TOOLS[self.tool].new_name:
-            text = f"cprbm: 'cprbm {self.tool}' is now 'cprbm {new_name}'; the next release drops the old name."
-            click.echo(text, err=True)
+        """The command of the tool."""
         found: click.Command = load_tool(self.tool).command
         return found
 
@@ -96,11 +92,7 @@ class Commands(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands; the developers' tools belong to a checkout."""
         hides_tools = not is_checkout()
-        return [
-            name
-            for name, each in self.commands.items()
-            if not each.hidden and not (hides_tools and isinstance(each, ToolCommand))
-        ]
+        return [name for name, each in self.commands.items() if not (hides_tools and isinstance(each, ToolCommand))]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of every group under its heading."""
@@ -117,7 +109,7 @@ class Commands(click.Group):
         """The command at the start of the arguments.
 
         Raises:
-            click.ClickException: the command is a developers' tool and this is no checkout, or the command is removed.
+            click.ClickException: the command is a developers' tool and this is no checkout.
             click.UsageError: no command has this name.
         """
         name, *rest = args
@@ -138,43 +130,16 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("tests/robustness", "benchmarks")
 
 
-@dataclass(frozen=True, slots=True)
-class Tool:
-    """A developers' tool.
-
-    Attributes:
-        module: its name.
-        purpose: as the list of commands states it.
-        new_name: the command that takes the place of this old one; empty if this is no old one.
-    """
-
-    module: str
-    purpose: str = ""
-    new_name: str = ""
-
-
 TOOLS = {
-    "robustness": Tool(
-        "tests.robustness.command",
-        "Judge both solvers on random scenes.",
-    ),
-    "stress": Tool("tests.robustness.command", new_name="robustness"),
-    "study relations": Tool(
+    "robustness": ("tests.robustness.command", "Judge both solvers on random scenes."),
+    "study relations": (
         "tests.relations.command",
         "Compare a scene with its moved, mirrored, reordered and scaled images.",
     ),
-    "bench --method slsqp": Tool("benchmarks.peers.slsqp"),
-    "bench --method ipopt": Tool("benchmarks.peers.ipopt"),
+    "bench --method slsqp": ("benchmarks.peers.slsqp", ""),
+    "bench --method ipopt": ("benchmarks.peers.ipopt", ""),
 }
-"""The tools by their commands, without the name of the program."""
-
-REMOVED = {
-    "regress": "'python -m tests.baseline' of a checkout records and compares the numbers (CONTRIBUTING.md).",
-    "study readings": "no reading of section 3.4 jumps where the paper says (the page 'Where a branch ends').",
-    "study materials": "within bending no error depends on the modulus (the page 'The paper’s claims').",
-    "bench --method trust-constr": "13 times the time of the CPRBM (the page 'Decisions').",
-}
-"""Commands without a successor, with the reason and the page that keeps their results."""
+"""Modules and purposes of the developers' tools by their commands, without the name of the program."""
 
 
 def is_checkout() -> bool:
@@ -183,15 +148,13 @@ def is_checkout() -> bool:
 
 
 def absence_of(command: str) -> str:
-    """The sentence that says why a tool or a removed command cannot run here; empty for every other command."""
-    if command in TOOLS and not is_checkout():
-        where = "it runs in a checkout of the repository, not from an installed package"
-        return f"'cprbm {command}' is a developers' tool: {where}."
-    return f"'cprbm {command}' is removed: {REMOVED[command]}" if command in REMOVED else ""
+    """The sentence that says why a tool cannot run here; empty for every other command."""
+    where = "it runs in a checkout of the repository, not from an installed package"
+    return f"'cprbm {command}' is a developers' tool: {where}." if command in TOOLS and not is_checkout() else ""
 
 
 def load_tool(command: str) -> ModuleType:
     """The module of a tool, from this checkout whatever the current folder holds."""
     if sys.path[0] != str(ROOT):
         sys.path.insert(0, str(ROOT))  # processes that share the work take this path over
-    return import_module(TOOLS[command].module)
+    return import_module(TOOLS[command][0])

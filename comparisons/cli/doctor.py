@@ -91,7 +91,7 @@ LIBRARIES = (
         f"{_APT} libgl1 libglu1-mesa libgomp1 libxcursor1 libxft2 libxinerama1",
     ),
     Library("ezdxf", "ezdxf", "'import' of DXF drawings", ">=1.3", "dxf"),
-    Library("meshio", "meshio", "those meshes, and files for ParaView", ">=5.3", "solid"),
+    Library("meshio", "meshio", "meshes of gmsh, and files for ParaView", ">=5.3", "solid"),
     Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view", WHAT_DRAWS),
 )
 

@@ -147,7 +147,7 @@ def _end_of_question(error: Exception) -> End | None:
 def _with_next_step(mistake: "Mistake") -> str:
     """A mistake, with the next step for a missing file."""
     path = Path(mistake.file)
-    if mistake.key or not mistake.file or path.exists():
+    if mistake.key or path.suffix != ".toml" or path.exists():
         return str(mistake)
     near = get_close_matches(path.name, [file.name for file in path.parent.glob("*.toml")], n=1)
     meant = f"is {path.parent / near[0]} meant? " if near else ""

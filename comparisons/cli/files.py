@@ -11,7 +11,7 @@ import click
 from comparisons.cli.doctor import line_for
 from comparisons.cli.errors import printable
 from comparisons.importing.drawing import read_drawing
-from comparisons.importing.scene_text import Choices, Unit, scene_text
+from comparisons.importing.scene_text import Choices, Unit, name_of, scene_text
 from comparisons.writing import write
 from cprbm_scene.fields import NAME
 from cprbm_scene.reading import schema as schema_of_scenes
@@ -41,7 +41,7 @@ def import_drawing(
     Raises:
         click.ClickException: the name is wrong, the file exists, or gmsh lacks libraries of the system.
     """
-    named = re.sub(r"[^A-Za-z0-9_-]", "_", drawing.stem) if name is None else name
+    named = name_of(drawing.stem) if name is None else name
     path = _free_path(out, named, "--name", "another --name")
     try:
         drawn = read_drawing(drawing, unit)

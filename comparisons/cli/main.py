@@ -70,7 +70,7 @@ MECHANISM = (
         "import",
         callback=later("files.import_drawing"),
         params=[
-            click.Argument(["drawing"], metavar="FILE", type=click.Path(path_type=Path)),
+            click.Argument(["drawing"], metavar="FILE", type=options.READ_FILE),
             click.Option(["--thickness"], callback=options.positive, required=True, metavar="T",
                          help="Thickness of the beams, in the file's unit."),
             click.Option(["--width"], callback=options.positive, required=True, metavar="W",
@@ -156,7 +156,7 @@ MECHANISM = (
                        metavar="N", help="Number of points in a sample, a power of 2."),
             options.flag(["--sobol"],
                          help="First- and total-order Sobol indices too; N (d + 2) points for d parameters."),
-            click.Option(["--limits"], type=options.FILE, metavar="FILE.toml",
+            click.Option(["--limits"], type=options.READ_FILE, metavar="FILE.toml",
                          help="File with [[limits]] on probes, for the yield."),
             options.solver(type=click.Choice(["cprbm", "fea"]), help="Solver of all points."),
             *MANY,
@@ -170,7 +170,7 @@ MECHANISM = (
         callback=later("many.optimise"),
         params=[
             CASE,
-            click.Option(["--goal"], required=True, type=options.FILE, metavar="FILE.toml",
+            click.Option(["--goal"], required=True, type=options.READ_FILE, metavar="FILE.toml",
                          help="File with a [goal] and [[limits]] on probes."),
             click.Option(["--vary"], multiple=True, metavar="NAME=FIRST..LAST",
                          help="Range of a parameter; otherwise the ranges of the scene's parameters."),
@@ -285,11 +285,10 @@ DEVELOPMENT = (
         callback=later("doctor.doctor"),
         params=[options.flag(["-q", "--quiet"], help="Print only required libraries that cannot be used.")],
         help="List installed and missing libraries.\n\nA missing library stands with the command that installs it.\n\n"
-        "Two further lines state whether worker processes can run, and whether PyVista can draw. The last line sums "
-        "up. Exit code 1 means a missing required library.",
+        "A further line states whether PyVista can draw. The last line sums up. Exit code 1 means a missing required "
+        "library.",
     ),
     ToolCommand("robustness"),
-    ToolCommand("stress"),
 )
 
 

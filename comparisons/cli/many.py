@@ -19,7 +19,8 @@ from comparisons.sweeps.running import Runner, Sweep, tasks_of
 from comparisons.sweeps.scatter import distributions_of, scatter_section, study
 from comparisons.sweeps.tables import write_netcdf, write_page, write_tables
 from comparisons.sweeps.workers import workers_on
-from cprbm_scene import Scene
+from cprbm_scene import Mistake, Scene
+from cprbm_scene.mistakes import refuse_broken
 
 
 def sweep(
@@ -38,8 +39,7 @@ def sweep(
     """
     scene = request.scene()
     axes, points = _points(request, scene, vary, sample)
-    checked = grids.chosen_for_check(points, axes, check)
-    tasks = tasks_of(scene, points, solver, checked, request.choices, shard)
+    tasks = tasks_of(scene, points, solver, grids.chosen_for_check(points, axes, check), request.choices, shard)
     with _runner(request, scene, "sweep", len(tasks)) as (out, runner):
         found = runner.run(Sweep(scene, axes, tasks), merge)
     write_tables(out, found)
@@ -64,6 +64,11 @@ def tolerance(
     """Solve a sample of a scene's parameters, and print quantiles and yield; exit code 1 if a point is missing."""
     scene = request.scene()
     bounds = bounds_of(scene, read_demands(limits) if limits else Demands(), str(limits))
+    refuse_broken(
+        limits
+        and not bounds
+        and Mistake("limits", "nothing", "[[limits]] with a probe, and least or most", str(limits))
+    )
     found = study(scene, distributions_of(scene), samples, solver, request.choices, indexed=sobol, bounds=bounds)
     with _runner(request, scene, "tolerance", len(found.sweep.tasks)) as (out, runner):
         found = replace(found, sweep=runner.run(found.sweep))

@@ -127,6 +127,7 @@ def candidates(ctx: click.Context, param: click.Parameter, incomplete: str) -> l
 
 _STANDARD, _THEORIES = Choices(), click.Choice(KINEMATICS)
 FILE = click.Path(dir_okay=False, path_type=Path)
+READ_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 DIRECTORY = click.Path(file_okay=False, path_type=Path)
 
 flag = partial(click.Option, is_flag=True)

@@ -101,8 +101,7 @@ def _compared_within(request: output.Request, run: Run, scene: Scene, tolerance:
 
 def _run(request: output.Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
     """Context with the run of the questions into the folder of the request."""
-    names = tuple(question.name for question in questions)
-    return run_into(request.out, request.solvers, names, request.processes)
+    return run_into(request.out, request.solvers, tuple(each.name for each in questions), request.processes)
 
 
 def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:

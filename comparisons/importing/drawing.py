@@ -61,7 +61,6 @@ class Drawing:
 
     curves: tuple[DrawnCurve, ...]
     points: dict[str, Array]
-    tagged: bool
     refused: tuple[str, ...] = ()
 
 
@@ -70,22 +69,19 @@ def read_drawing(path: Path, unit: str) -> Drawing:
 
     Raises:
         ImportError: the library for the format is missing.
-        SceneError: the file is missing, has another format, or its reader refuses the file.
+        OSError: the file cannot be read.
+        SceneError: the file has another format, or its reader refuses the file.
     """
-    found, allowed = "no such file", "a drawing: "
-    allowed += ", ".join(f"{name} ({', '.join(endings)})" for name, endings, *_ in _FORMATS)
-    if path.is_file():
-        found = "a file of another format"
-        with path.open("rb") as stream:
-            begin = stream.read(_BEGIN)
-        for name, endings, pattern, read in _FORMATS:
-            if not re.match(pattern, begin) or (not pattern and path.suffix not in endings):
-                continue
-            if read is not _with_gmsh or path.suffix.lower() in endings:
-                return read(path, unit)
-            found, allowed = f"a {name} file with the ending {path.suffix!r}", f"the ending {endings[0]}"
-            break
-    raise _refused(path, found, allowed)
+    with path.open("rb") as stream:
+        begin = stream.read(_BEGIN)
+    for name, endings, pattern, read in _FORMATS:
+        if not re.match(pattern, begin) or (not pattern and path.suffix not in endings):
+            continue
+        if read is not _with_gmsh or path.suffix.lower() in endings:
+            return read(path, unit)
+        raise _refused(path, f"a {name} file with the ending {path.suffix!r}", f"the ending {endings[0]}")
+    formats = ", ".join(f"{name} ({', '.join(endings)})" for name, endings, *_ in _FORMATS)
+    raise _refused(path, "a file of another format", f"a drawing: {formats}")
 
 
 def _refused(path: Path, found: str, allowed: str) -> SceneError:
@@ -101,7 +97,7 @@ def _read_table(path: Path, unit: str) -> Drawing:
     if len(points) < 2:
         raise _refused(path, f"{len(points)} points", "at least two points")
     places = np.pad(points, ((0, 0), (0, 1)))
-    return Drawing((DrawnCurve(path.stem, 1, f"{len(points)} points", places, None),), {}, tagged=True)
+    return Drawing((DrawnCurve(path.stem, 1, f"{len(points)} points", places, None),), {})
 
 
 def _with_ezdxf(path: Path, unit: str) -> Drawing:
@@ -117,7 +113,8 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
     stated = _UNITS.get(number, "another unit")
     if number and stated != unit:
         found = f"a drawing in {stated} ($INSUNITS = {number}), read in {unit}"
-        raise _refused(path, found, f"--unit {stated}" if number in _UNITS else "a drawing in mm")
+        remedy = f"--unit {stated}; a wrong unit of the drawing is mended afterwards, by the key units of the scene"
+        raise _refused(path, found, remedy if number in _UNITS else "a drawing in mm")
     curves, refused, points = list[DrawnCurve](), list[str](), dict[str, list[Array]]()
     for entity in document.modelspace():
         kind, layer = entity.dxftype(), entity.dxf.layer
@@ -133,8 +130,7 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
                 f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), "
                 "no line, arc, spline, elliptic arc or polyline"
             )
-    tagged = any(curve.tag != f"curve{curve.number}" for curve in curves)
-    return Drawing(tuple(curves), {layer: np.array(each) for layer, each in points.items()}, tagged, tuple(refused))
+    return Drawing(tuple(curves), {layer: np.array(each) for layer, each in points.items()}, tuple(refused))
 
 
 def _along(part) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001 - ezdxf exports no types
@@ -179,10 +175,9 @@ def _drawing(model) -> Drawing:  # type: ignore[no-untyped-def]  # noqa: ANN001 
         elif dim == 1:
             named += [(name or f"curves{group}", int(k)) for k in entities]
     if named:
-        return Drawing(tuple(_curve(model, *each) for each in named), points, tagged=True)
+        return Drawing(tuple(_curve(model, *each) for each in named), points)
     every = [(model.getEntityName(1, k).rpartition("/")[2], int(k)) for _, k in model.getEntities(1)]
-    curves = tuple(_curve(model, name or f"curve{k}", k) for name, k in every)
-    return Drawing(curves, points, tagged=any(name for name, _ in every))
+    return Drawing(tuple(_curve(model, name or f"curve{k}", k) for name, k in every), points)
 
 
 def _place(model, number: int) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001

@@ -35,6 +35,7 @@ import shapely
 from comparisons.importing.drawing import Drawing, DrawnCurve
 from cprbm_scene import Arc, Array, Line, Mistake, SceneError, Spline, scene_from
 from cprbm_scene.curve_records import shape_of
+from cprbm_scene.fields import LETTERS
 
 Unit = Literal["m", "cm", "mm", "um", "in"]
 
@@ -121,13 +122,13 @@ def _names(curves: Sequence[DrawnCurve]) -> list[str]:
     """Names of the beams, with a number in a group of several curves."""
     tags = [curve.tag for curve in curves]
     several = {tag for tag in tags if tags.count(tag) > 1}
-    return [_name(tag) + (f"-{tags[: k + 1].count(tag)}" if tag in several else "") for k, tag in enumerate(tags)]
+    return [name_of(tag) + (f"-{tags[: k + 1].count(tag)}" if tag in several else "") for k, tag in enumerate(tags)]
 
 
-def _name(tag: str) -> str:
-    """A name of a scene for any text."""
-    name = re.sub(r"[^A-Za-z0-9_-]", "_", tag)[:48]
-    return name if re.match(r"[A-Za-z_]", name) else f"_{name}"
+def name_of(text: str) -> str:
+    """A name in a scene for any text."""
+    name = re.sub(f"[^{LETTERS}0-9-]", "_", text)[:48]
+    return name if re.match(f"[{LETTERS}]", name) else f"_{name}"
 
 
 def _beam(curve: DrawnCurve, name: str, z: float, choices: Choices, near: float) -> _Beam | Mistake:
@@ -158,7 +159,7 @@ def _bodies(drawing: Drawing, ends: Array, near: float) -> _Bodies:
     """Bodies of the groups of points, and of ``ends`` (k, 2) that meet at no named point; with a ground."""
     bodies: _Bodies = {}
     for tag, group in drawing.points.items():
-        name = _name(tag)
+        name = name_of(tag)
         if len(group) == 1 and tag not in GROUND:
             bodies[f"{name}-body"] = {name: group[0, :2]}
         else:
@@ -186,14 +187,14 @@ def _text(
     environment = jinja2.Environment(
         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
     )
-    # a comment has no control characters
+    # a key with an accent stands in quotes, a comment has no control characters
+    environment.filters["key"] = lambda name: name if name.isascii() else f'"{name}"'
     environment.filters["comment"] = lambda text: re.sub(r"[\x00-\x1f\x7f]", " ", text)
     bodies = _bodies(drawing, np.array([end for beam in beams for end in (beam.curve.start, beam.curve.end)]), near)
     template = files("comparisons.importing").joinpath("scene.toml.jinja").read_text(encoding="utf-8")
     return environment.from_string(template).render(
         file=path.name,
         title=f"From {path.name}" if re.fullmatch(r"[^\x00-\x1f\x7f\"\\]*", path.name) else "",
-        tagged=drawing.tagged,
         choices=choices,
         notes=notes,
         ground=GROUND,

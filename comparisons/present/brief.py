@@ -84,13 +84,17 @@ def nearest_rows(compared: Comparison, rows: Sequence[Row], count: int) -> Table
             stage = row.stage
             body.append((at_station(compared.scene, *row.where), *[""] * 6))
         body += _lines(row, *units[row.unit])
+    farther = (row.bounds and row.largest_difference > row.bounds.total for row in (rows[at] for at in order[:count]))
     others = Counter(row.word.value if row.word else "without a word" for row in (rows[at] for at in order[count:]))
-    note = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
+    more = ", ".join(f"{times} more {'row' if times == 1 else 'rows'} {word}" for word, times in others.items())
     return Table(
         "",
         ("probe", "unit", "CPRBM", "FEA", "difference", "stated", "word"),
         tuple(body),
-        f"{note} (-v)" if note else "",
+        "\n".join(
+            [f"{more} (-v)"] * bool(more)
+            + ["Stresses are maxima; differences leave out held ends and ends of contacts."] * any(farther)
+        ),
     )
 
 
@@ -120,8 +124,11 @@ def _nearness(row: Row) -> tuple[int, float]:
 
 def _lines(row: Row, factor: float, unit: str) -> list[tuple[str, ...]]:
     """Lines of a row; the value of a stress is the largest magnitude along the beam."""
-    stated = share(row, row.bounds.total, digits=2) if row.bounds else None
-    measured = (share(row, row.difference, digits=2), stated, row.word and row.word.value)
+    measured = (
+        share(row, row.difference, digits=2),
+        share(row, row.bounds.total, digits=2) if row.bounds else None,
+        row.word and row.word.value,
+    )
     found = [
         dict(components(row.probe.quantity, values, factor, ROUND_OFF * row.scale)) for values in (row.cprbm, row.fea)
     ]

@@ -39,6 +39,7 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
     "font.size": 11.0,
+    "axes.formatter.limits": (-3, 5),  # powers of ten of longer numbers stand beside the axis
     "axes.titlelocation": "left",
     "axes.titlesize": 12.0,
     "axes.spines.top": False,
@@ -93,6 +94,8 @@ def canvas(
         ).ravel()
         for spare in axes[count:]:
             spare.remove()
+        for each in axes[:count]:
+            each.locator_params(axis="x", nbins=int(width / columns))  # an inch for a number
         yield drawing, [*axes[:count]]
 
 

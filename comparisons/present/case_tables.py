@@ -269,9 +269,9 @@ def _reaction_table(compared: Comparison, drive: str, found: Sequence[WorkEnergy
         Column[WorkEnergyReaction]("station", lambda at: at_station(scene, at.stage, at.station)),
         Column("multiplier", "multiplier", force),
         Column("work–energy", "work_energy", force),
-        Column("from it", "difference", percent),
+        Column("less multiplier", "difference", percent),
         Column("FEA", "fea", force),
-        Column("multiplier from it", "from_fea", percent),
+        Column("multiplier less FEA", "from_fea", percent),
         Column("no value because", lambda at: ": ".join((at.absence.value, *filter(None, [", ".join(at.changes)])))
                if at.absence else ""),
     ]  # fmt: skip

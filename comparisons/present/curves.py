@@ -40,6 +40,7 @@ CPRBM: Look = {"color": BLUE, "linestyle": "none", "marker": ".", "markersize": 
 _BAND = "#eef2f7"
 _WIDTH, _HEIGHT = 5.2, 2.5  # inches: a figure, and a panel
 _MARKERS = 30  # most markers of a branch
+_SHOWN = 0.025  # half of the least shown part of a beam over the longest beam
 
 
 class Panel(NamedTuple):
@@ -300,7 +301,10 @@ def contact_figures(compared: Comparison) -> Iterator[Figure]:
         for pair, found in groupby(forces, key=lambda at: f"{at.source} on {at.target}"):
             s, sizes = np.array([(float(at.s), np.hypot(*at.force)) for at in found]).T
             step = {**look, "drawstyle": "steps-post", "markerfacecolor": "none"}
-            lines.setdefault(pair, []).append((np.append(s[:1], s), np.cumsum([0.0, *sizes]), step))
+            shown = s.mean() + _SHOWN * longest(scene) * np.array([-1.0, 1.0])
+            lines.setdefault(pair, [(shown, np.zeros(2), {"linestyle": "none"})]).append(
+                (np.append(s[:1], s), np.cumsum([0.0, *sizes]), step)
+            )
     if lines:
         caption = (
             f"Contact forces along the beams at {at_station(scene, *last)}, summed up from the start of the beam. A "

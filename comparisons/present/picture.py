@@ -1,6 +1,6 @@
 """The drawing list: all drawable parts of a mechanism at a station, for figures, pages, animations, VTU and PyVista."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import atan2, cos, sin
 from typing import Literal, NamedTuple
 
@@ -140,6 +140,12 @@ class Bounds(NamedTuple):
         """Vector (2,), m, from the tail to the head of a drawn arrow; None for a force without an arrow."""
         most = self.force[arrow.kind]
         return ARROW * self.size / most * arrow.resultant if arrow.size > LEAST * most > 0.0 else None
+
+    def around(self, arrows: Iterable[Arrow]) -> "Bounds":
+        """The limits with room for arrows."""
+        tails = [arrow.middle - vector for arrow in arrows if (vector := self.arrow(arrow)) is not None]
+        corners = np.array([self.low, self.high, *tails])
+        return self._replace(low=corners.min(axis=0), high=corners.max(axis=0))
 
 
 def view_of(scene: Scene, station: StationAnswer) -> View:

@@ -74,7 +74,7 @@ def stepper(compared: Comparison) -> Plain | None:
     if not common:
         return None
     views = [view_of(scene, fea[where]) for where in common]
-    bounds = bounds_of(scene, views, "bending_stress")
+    bounds = bounds_of(scene, views, "bending_stress").around(each for view in views for each in view.arrows)
     margin = _MARGIN * bounds.size
     corner = np.array([bounds.low[0] - margin, bounds.high[1] + margin])
     sides = bounds.high - bounds.low + 2.0 * margin

@@ -1,7 +1,7 @@
 """Tables on the screen and cells of tables on a page.
 
 A table wider than the screen splits between columns into several tables; the first column, and a unit beside it, stand
-in all of them.  Sentences fold between words, names fold anywhere, and numbers never fold.
+in all of them.  Sentences fold between words, and numbers never fold.
 """
 
 import io
@@ -55,24 +55,25 @@ def screen_text(table: Table, *, width: int) -> str:
             )
         _fill(grid, [[row[column] for column in widths] for row in table.rows])
         parts.append(_printed(grid, width))
-    note = _printed(Text(table.note, style="dim italic"), width) if table.note else ""
-    return "".join((*parts, note))
+    return "".join((*parts, _printed(Text(table.note, style="dim italic"), width) if table.note else ""))
 
 
 def brief_lines(table: Table, *, width: int) -> list[str]:
-    """Lines of the table without title and note, at most ``width`` columns wide: the first column folds.
+    """Lines of the table without title and note, at most ``width`` columns wide.
 
-    Where less than ``_NAME`` columns are left for the first column, the table splits as on the screen.
+    Names fold behind points, spaces or underscores.  Where less than ``_NAME`` columns are left for the names, the
+    table splits as on the screen.
     """
-    if width < _NAME + sum(
-        1 + max(map(cell_len, cells)) for cells in zip(*(row[1:] for row in (table.headers, *table.rows)), strict=True)
-    ):
+    others = zip(*(row[1:] for row in (table.headers, *table.rows)), strict=True)
+    room = width - sum(2 + max(map(cell_len, cells)) for cells in others)
+    if room < _NAME:
         return screen_text(replace(table, title="", note=""), width=width).splitlines()
     grid = Grid(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     for place, header in enumerate(table.headers):
         left = place == 0 or header == "word"
         grid.add_column(header, justify="left" if left else "right", overflow="fold", no_wrap=place > 0)
-    _fill(grid, table.rows)
+    part = rf".{{1,{room}}}(?:$|(?<=[. ])(?=[^\W\d]))|.{{1,{room}}}(?<=_)|.{{1,{room}}}"
+    _fill(grid, (("\n".join(re.findall(part, name)), *cells) for name, *cells in table.rows))
     return [line.rstrip() for line in _printed(grid, width).splitlines()]
 
 

@@ -65,7 +65,7 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
         DrawingError: VTK cannot draw here.
     """
     views = [view_of(scene, station) for station in answer.stations[0 if kind in _MOVING else -1 :]]
-    bounds = bounds_of(scene, views, quantity)
+    bounds = bounds_of(scene, views, quantity).around(each for view in views for each in view.arrows_of("push"))
     if kind == ".pvd":
         yield from series(scene, views, path)
     elif kind == ".vtu":

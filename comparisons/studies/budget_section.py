@@ -130,7 +130,7 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
         axes.set_xlabel("share of all parts, %")
         for place, each in enumerate(budgets):
             text = percent(each.row.fraction(each.row.difference))
-            axes.annotate(text, (1.01, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)
+            axes.annotate(text, (1.02, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)
         drawing.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=9.0)
         caption = (
             f"Parts of the differences at {at_station(account.scene, *last_station(account.scene))}: to the right "
@@ -157,7 +157,8 @@ def _draw_parts(axes: Axes, budgets: Sequence[Budget]) -> None:
         for end, share in zip(ends, shares, strict=True):
             end[share < 0.0] += share
     sums = [sum(end) for end in ends]
-    axes.plot(sums, range(len(budgets)), "D", color="white", markeredgecolor="black", markersize=5.0, label="sum")
+    axes.plot(sums, range(len(budgets)), "D", color="white", markeredgecolor="black", markersize=5.0, label="sum",
+              clip_on=False, zorder=3.0)  # fmt: skip
 
 
 def _draw_missed(axes: Axes, budgets: Sequence[Budget]) -> bool:

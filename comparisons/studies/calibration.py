@@ -79,8 +79,7 @@ def trial_of(scene: Scene, links: int, elements: int, exact: Answer, solvers: So
     choices = Choices(links=links, elements=elements, theory="bending")
     runs = paired(scene, choices, replace(solvers, exact=None), crew, bare=True)
     comparison = compare(replace(runs, answers={**runs.answers, "exact": exact}))
-    sizes = {"cprbm": links, "fea": elements}
-    return Trial(scene.name, sizes, comparison.verdict, error_ratios(comparison.rows))
+    return Trial(scene.name, {"cprbm": links, "fea": elements}, comparison.verdict, error_ratios(comparison.rows))
 
 
 def tallies(trials: Iterable[Trial]) -> tuple[Tally, ...]:
@@ -209,8 +208,7 @@ def _worst(found: Calibration) -> Table:
         Column("true over stated", lambda at: at[1].ratio, number),
         Column("", lambda at: at[1].word),
     ]
-    note = "True and stated as fractions of the probe's scale."
-    return table_of("The least well stated", columns, worst, note)
+    return table_of("The least well stated", columns, worst, "True and stated as fractions of the probe's scale.")
 
 
 def pictures(found: Calibration) -> tuple[Figure, ...]:

@@ -92,8 +92,9 @@ class Report:
 
     def _key(self, question: Question) -> str:
         """Digest of the dependence of a chapter: a chapter with other choices or parts is written anew."""
-        parts = self.choices, self.sizes, self.times, self.exact
-        return digest(question.model_dump_json(exclude={"file"}), repr(parts))
+        return digest(
+            question.model_dump_json(exclude={"file"}), repr((self.choices, self.sizes, self.times, self.exact))
+        )
 
     @property
     def _table_key(self) -> str:

@@ -14,7 +14,7 @@ All numbers have the units of the scene's file.  Of a stress along a beam the la
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import inf, isfinite, isinf
 from pathlib import Path
 from typing import Literal
 
@@ -25,7 +25,7 @@ from comparisons.quantities import COMPONENTS, unit_of
 from comparisons.sweeps.outcome import NumberRecord, Outcome
 from cprbm_scene import Mistake, Scene, SceneError
 from cprbm_scene.fields import Reading, Record
-from cprbm_scene.mistakes import first_of, mistakes_of
+from cprbm_scene.mistakes import broken, first_of, mistakes_of
 from cprbm_scene.reading import toml_data
 
 
@@ -57,13 +57,15 @@ class Goal(_Asked):
 class Limit(_Asked):
     """The ``least`` and the ``most`` of a number of a probe."""
 
-    least: float | None = None
-    most: float | None = None
+    least: float = -inf
+    most: float = inf
 
     def rules(self) -> Iterator[Mistake]:
-        """A limit has a bound."""
-        if self.least is None and self.most is None:
-            yield Mistake("", "neither least nor most", "least, most, or both")
+        """A limit has a bound, and values between its bounds."""
+        yield from broken(
+            isinf(self.least) and isinf(self.most) and Mistake("", "neither least nor most", "least, most, or both"),
+            self.least > self.most and Mistake("least", f"{self.least:g}", f"a number of at most {self.most:g}, most"),
+        )
 
 
 class Demands(Record):
@@ -176,11 +178,7 @@ def bounds_of(scene: Scene, demands: Demands, file: str) -> tuple[Bound, ...]:
         SceneError: the scene has no such number.
     """
     return tuple(
-        Bound(
-            measure_of(scene, limit, f"limits[{place}]", file),
-            -inf if limit.least is None else limit.least,
-            inf if limit.most is None else limit.most,
-        )
+        Bound(measure_of(scene, limit, f"limits[{place}]", file), limit.least, limit.most)
         for place, limit in enumerate(demands.limits)
     )
 

@@ -1,6 +1,5 @@
 """Points of a sweep: values of parameters in SI, from grids, samples and files."""
 
-import csv
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,6 +12,8 @@ from scipy.stats import qmc
 
 from comparisons.formats import file_unit, joined, with_symbols
 from cprbm_scene import Array, Mistake, Scene, SceneError
+from cprbm_scene.mistakes import first_broken, mistake, refuse_broken
+from cprbm_scene.units import rows_of, text_of
 
 Point = Mapping[str, float]
 """Values of parameters by name, SI."""
@@ -22,6 +23,9 @@ InSI = Callable[[str, str], float]
 
 MOST = 100_000
 """Largest number of points in a sweep."""
+
+_LONGEST = 100_000_000
+"""Largest size of a table of points in bytes."""
 
 SEED = 905
 """Seed of the samples: a command always draws the same points."""
@@ -90,11 +94,11 @@ def axis_of(text: str, in_si: InSI) -> Axis:
     """
     found = _VARIED.fullmatch(text)
     if found is None or found["count"] in ("0", "1"):
-        raise _refused("--vary", repr(text), "NAME=FIRST..LAST:COUNT with two values or more, as t=1.8mm..2.2mm:11")
+        raise mistake(repr(text), "NAME=FIRST..LAST:COUNT with two values or more, as t=1.8mm..2.2mm:11", "--vary")
     name, last = found["name"], found["high"]
     low, high = in_si(name, found["low"]), in_si(name, last)
     if low == high:
-        raise _refused("--vary", repr(text), "two different values")
+        raise mistake(repr(text), "two different values", "--vary")
     parts = _QUANTITY.fullmatch(last)
     number, unit = (float(parts["number"]), parts["unit"]) if parts else (0.0, "")
     count = int(found["count"] or 0)
@@ -107,15 +111,18 @@ def grid(axes: Sequence[Axis]) -> tuple[Point, ...]:
     Raises:
         SceneError: two axes have one name, an axis has no number of values, or there are too many points.
     """
-    names = [axis.name for axis in axes]
-    if len(set(names)) < len(names):
-        raise _refused("--vary", f"{', '.join(names)}", "a parameter once")
-    for axis in axes:
-        if not axis.count:
-            raise _refused("--vary", f"{axis.name} without a number of values", f"{axis.name}=FIRST..LAST:COUNT")
-    number = math.prod(axis.count for axis in axes)
-    if number > MOST:
-        raise _refused("--vary", f"{number} points", f"at most {MOST}")
+    names, number = [axis.name for axis in axes], math.prod(axis.count for axis in axes)
+    refuse_broken(
+        *first_broken(
+            len(set(names)) < len(names) and Mistake("--vary", ", ".join(names), "a parameter once"),
+            *(
+                not axis.count
+                and Mistake("--vary", f"{axis.name} without a number of values", f"{axis.name}=FIRST..LAST:COUNT")
+                for axis in axes
+            ),
+            number > MOST and Mistake("--vary", f"{number} points", f"at most {MOST}"),
+        )
+    )
     return tuple(dict(zip(names, values, strict=True)) for values in product(*(axis.values() for axis in axes)))
 
 
@@ -127,42 +134,46 @@ def sample(text: str, axes: Sequence[Axis]) -> tuple[Point, ...]:
     """
     found = re.fullmatch(r"(sobol|lhs):(\d{1,6})", text)
     if found is None or not 1 <= int(found[2]) <= MOST:
-        raise _refused("--sample", repr(text), f"sobol:K or lhs:K with K from 1 to {MOST}, or a file that ends in .csv")
+        raise mistake(repr(text), f"sobol:K or lhs:K with K from 1 to {MOST}, or a file that ends in .csv", "--sample")
     if not axes:
-        raise _refused("--sample", f"{text} without a range", "--vary NAME=FIRST..LAST, or a parameter with a range")
+        raise mistake(f"{text} without a range", "--vary NAME=FIRST..LAST, or a parameter with a range", "--sample")
     count, size = int(found[2]), len(axes)
     if found[1] == "lhs":
         unit = qmc.LatinHypercube(size, seed=SEED).random(count)
     else:
         unit = qmc.Sobol(size, seed=SEED).random_base2(math.ceil(math.log2(count)))[:count]
     low, high = (np.array([getattr(axis, end) for axis in axes]) for end in ("low", "high"))
-    values = low + unit * (high - low)
-    return tuple({axis.name: float(x) for axis, x in zip(axes, row, strict=True)} for row in values)
+    rows = low + unit * (high - low)
+    return tuple({axis.name: float(x) for axis, x in zip(axes, row, strict=True)} for row in rows)
 
 
 def read_points(path: Path, in_si: InSI) -> tuple[Point, ...]:
-    """Points of a CSV file: names of parameters in the first line, numbers with or without units below.
+    """Points of a table: names of parameters in the first row, numbers with or without units below.
 
     Raises:
-        SceneError: the file is absent or no table, or the scene refuses a value.
+        SceneError: the file cannot be read, or a row is wrong; the error names file and row.
     """
+    points, where = list[Point](), ""
     try:
-        rows = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
-    except (OSError, UnicodeDecodeError) as error:
-        raise _refused(
-            str(path),
-            f"a file that cannot be read ({getattr(error, 'strerror', None) or error})",
-            "a table with names of parameters in the first line",
-        ) from None
-    head, *body = [[cell.strip() for cell in row] for row in rows if row] or [[]]
-    wrong = [f"row {k} with {len(row)} of {len(head)} values" for k, row in enumerate(body, 1) if len(row) != len(head)]
-    if not body or wrong or len(body) > MOST:
-        raise _refused(
-            str(path),
-            f"{wrong[0] if wrong else f'{len(body)} rows'} below the names {', '.join(head) or '(none)'}",
-            f"1 to {MOST} rows with a value for every name",
+        (_, names), *rows = rows_of(text_of(path, "a table in UTF-8", most=_LONGEST)) or [(1, [])]
+        refuse_broken(
+            not 1 <= len(rows) <= MOST
+            and Mistake(
+                "",
+                f"{len(rows)} rows below the names {', '.join(names) or '(none)'}",
+                f"names of parameters in the first row, and 1 to {MOST} rows of numbers",
+            )
         )
-    return tuple({name: in_si(name, cell) for name, cell in zip(head, row, strict=True)} for row in body)
+        for row, cells in rows:
+            where, point = f"row {row}", dict(zip(names, cells, strict=False))
+            refuse_broken(
+                not len(cells) == len(names) == len(point)
+                and Mistake("", f"{len(cells)} values of {', '.join(names)}", "a value for every name, each name once")
+            )
+            points.append({name: in_si(name, cell) for name, cell in point.items()})
+    except SceneError as error:
+        raise SceneError([Mistake(where, each.found, each.allowed, str(path)) for each in error.mistakes]) from None
+    return tuple(points)
 
 
 def axes_of(points: Sequence[Point]) -> tuple[Axis, ...]:
@@ -200,7 +211,3 @@ def chosen_for_check(points: Sequence[Point], axes: Sequence[Axis], count: int) 
         found.append(int(np.argmin(away)))
         left[found[-1]] = False
     return frozenset(found)
-
-
-def _refused(key: str, found: str, allowed: str) -> SceneError:
-    return SceneError([Mistake(key, found, allowed)])

@@ -73,8 +73,10 @@ class Sweep:
         checked = [outcome.verdict for outcome in outcomes if outcome.solver == "compare"]
         words = sorted(set(checked), key=lambda word: (word != "AGREE", word))
         text = ", ".join(f"{word or 'no verdict'} at {checked.count(word)}" for word in words)
-        text = f"{text} of {len(checked)} checked points, " if checked else ""
-        text += f"{len(outcomes) - len(checked)} unchecked"
+        others = len(outcomes) - len(checked)
+        text = (
+            f"{text} of {len(checked)} checked points, {others} unchecked" if checked else f"{others} points, unchecked"
+        )
         failed = [outcome.ending for outcome in outcomes if not outcome.completed]
         endings = ", ".join(f"{failed.count(name)} {name}" for name in sorted(set(failed)))
         text += f"; {len(failed)} of {len(outcomes)} points failed ({endings})" if failed else ""

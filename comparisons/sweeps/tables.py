@@ -19,7 +19,7 @@ import numpy as np
 
 from comparisons.formats import display_unit
 from comparisons.present.canvas import BLUE, RED, Axes, canvas, finished, panels
-from comparisons.present.columns import Figure, Section
+from comparisons.present.columns import Figure, Section, Table
 from comparisons.present.csv_table import csv_text, in_file_units, in_unit
 from comparisons.present.page import put_section, rendered
 from comparisons.quantities import stage_of
@@ -63,8 +63,7 @@ def write_tables(folder: Path, sweep: Sweep) -> None:
         for task, outcome in sweep.points()
         for number in outcome.numbers or ({},)  # a point without numbers has a line too
     )
-    columns = [*heads, *_PLACES, *_VALUES, "unit", "word", *tails]
-    write(folder / "numbers.csv", csv_text(columns, long))
+    write(folder / "numbers.csv", csv_text([*heads, *_PLACES, *_VALUES, "unit", "word", *tails], long))
     rows = [_wide(sweep, task, outcome) for task, outcome in sweep.points()]
     wide = dict.fromkeys(name for row in rows for name in row if name not in (*heads, *tails))
     write(folder / "last.csv", csv_text([*heads, *tails[:-1], *wide, "sentence"], rows))
@@ -148,19 +147,17 @@ def write_page(folder: Path, sweep: Sweep) -> None:
         OSError: a file cannot be written.
     """
     solved = sweep.solved()
-    shown = _shown(sweep.scene, _fullest(solved)) if solved else []
-    figures = tuple(_figures(sweep, solved, shown)) if solved else ()
-    put_section(folder, Section("", figures=figures))
-    failed = [
+    numbers = dependent(sweep.scene, solved) if solved else []
+    failed = tuple(
         (place_text(sweep.axes, task.point), outcome.ending, outcome.sentence)
         for task, outcome in sweep.points()
         if not outcome.completed
-    ]
-    family = json.dumps(_slider(sweep, solved, shown[0]) if shown else {"curves": []}).replace("<", "\\u003c")
-    write(
-        folder / "index.html",
-        rendered("sweep.html", {"sweep": sweep, "figures": figures, "failed": failed, "family": family}),
     )
+    tables = (Table("Points that failed", ("point", "ending", "reason"), failed),) if failed else ()
+    section = Section("", figures=tuple(_figures(sweep, solved, numbers)) if solved else (), tables=tables)
+    put_section(folder, section)
+    family = json.dumps(_slider(sweep, solved, numbers[0]) if numbers else {"curves": []}).replace("<", "\\u003c")
+    write(folder / "index.html", rendered("sweep.html", {"sweep": sweep, "section": section, "family": family}))
 
 
 def _figures(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> Iterator[Figure]:
@@ -179,11 +176,22 @@ def _fullest(solved: Solved) -> Outcome:
     return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers))
 
 
-def _shown(scene: Scene, outcome: Outcome) -> list[Measure]:
-    """Numbers of the last stations of an outcome, without components that are round-off at all stations."""
-    sizes = {each: max((abs(one["value"]) for one in each.numbers(outcome)), default=0.0) for each in measures(scene)}
+def dependent(scene: Scene, solved: Solved) -> list[Measure]:
+    """Numbers above round-off that depend on the parameters at any station; without any all numbers above round-off."""
+    whole = _fullest(solved)
+    curves = {each: {one["station"]: one["value"] for one in each.numbers(whole)} for each in measures(scene)}
+    sizes = {each: max(map(abs, curve.values()), default=0.0) for each, curve in curves.items()}
     largest = dict(sorted((each.unit, size) for each, size in sizes.items()))  # the last of a unit stays
-    return [each for each, size in sizes.items() if size > ROUND_OFF * largest[each.unit] and each.last(outcome)]
+    found = [each for each, size in sizes.items() if size > ROUND_OFF * largest[each.unit] and each.last(whole)]
+    return [
+        each
+        for each in found
+        if any(
+            abs(one["value"] - curves[each].get(one["station"], one["value"])) > ROUND_OFF * sizes[each]
+            for _, outcome in solved
+            for one in each.numbers(outcome)
+        )
+    ] or found
 
 
 def _unit_of(sweep: Sweep, numbers: Sequence[NumberRecord], kind: str = "") -> tuple[float, str]:
@@ -214,7 +222,7 @@ def _over_parameters(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> 
             low = [sweep.axes[1].of(task.point) if mapped else axes.get_ylim()[0] for task in failed]
             if failed:
                 axes.plot([first.of(task.point) for task in failed], low, "x", color=RED, clip_on=False)
-        caption = "Values at the last station over the parameters. Crosses: points that failed."
+        caption = "Numbers that depend on the parameters, at the last station. Crosses: points that failed."
         return finished(figure, "parameters", caption)
 
 

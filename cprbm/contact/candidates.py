@@ -212,8 +212,7 @@ class Contacts:
     @property
     def stay_open(self) -> Flags:
         """Places of the pairs ``kept_open``."""
-        pairs = np.array(sorted(self.kept_open), dtype=np.int64)
-        return np.asarray(np.any(self.places.pair[:, None] == pairs, axis=1))
+        return np.asarray((self.places.pair[:, None] == np.array(sorted(self.kept_open), dtype=np.int64)).any(axis=1))
 
     def pressing(self, pair: int) -> Flags:
         """Closed places of a pair."""

@@ -56,6 +56,7 @@ from cprbm.equilibrium import (
     certify,
     equilibrium,
     softest,
+    with_fixed_places,
 )
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Event, Loss
@@ -164,7 +165,7 @@ class Driver:
 
     def _trial(self, way: Way, t: float, largest: float) -> tuple[float, Solved, Change | None] | StepError:
         """Fraction and state at the end of the next step, and the change there, or why there is no step."""
-        begin, closing, states = self.reached, frozenset[int](), dict[float, Solved]()
+        begin, start, closing, states = self.reached, self.solved.state, frozenset[int](), dict[float, Solved]()
         awaited = frozenset(range(len(self.system.geometry.pairs))) - pressing(self.solved)
 
         def solve(share: float) -> Solved:
@@ -178,12 +179,14 @@ class Driver:
 
         try:
             while 1.0 not in states:
-                states[0.0] = replace(self.solved, state=kept_open(self.solved.state, closing))
+                states[0.0] = replace(self.solved, state=kept_open(start, closing))
                 try:
                     solve(1.0)
                 except ContactClosesError as overlap:
                     closing |= apart_pairs(self.solved, overlap.overlapping)
                     awaited -= overlap.met
+                    # pairs that overlap keep the sides that they have at the begin
+                    start = replace(start, contacts=with_fixed_places(self.system.geometry, start.z, start.contacts))
             solved = solve(1.0)
             # an event is not sought in a step that is too long
             turn = turned(self.solved, solved)
@@ -201,8 +204,8 @@ class Driver:
                     # a pair opens before, and is back at the end of the step: a shorter step sees the pair
                     return self._trial(way, at, largest)
             elif closing:
-                # overlaps at the very end of a short step
-                solved = self._equilibrium(kept_open(solved.state, frozenset()))
+                # the contact alone leads to the end of a short step
+                solved = self._equilibrium(replace(start, target=solved.state.target))
         except (ContactClosesError, NotConvergedError, ValueError) as failure:
             return StepError(Ending.STEP_TOO_SMALL, str(failure))
         certificate, ending = certify(solved, self.settings.tolerance, 0, self.acting, with_curvature=False)

@@ -35,6 +35,13 @@ RESTING = 1e-6
 LEANING = 1e-9
 """Least change of the thickness's slope at a corner: round-off."""
 
+ALIKE, SPLINED = 1e-4, 1 / 64
+"""Turn of two curves against each other over a link, over the turn t of two links and over t³: least of a point.
+
+Flatter minima of the gap are no points of contact.  The spline of links that turn by τ leaves the direction of an arc
+by τ³/12: the gap of nested arcs has a minimum in most links.
+"""
+
 WITHIN = 0.5
 """Gap, in pieces, of a joint with a possible contact beside the joint."""
 
@@ -76,8 +83,8 @@ def points_at(
 ) -> tuple[Places, Array, Array]:
     """Joints (k,) as moving places with ``forces`` (k,) at the minima of the gap; gaps and curvatures there.
 
-    Inf and 0 without a minimum between the neighbouring joints, and at a corner: the corner is a place.  At a corner of
-    the thickness the slope changes its sign: no place rests there.
+    Inf and 0 without a minimum between the neighbouring joints, at a minimum that the splines of nested arcs make, and
+    at a corner: the corner is a place.  At a corner of the thickness the slope changes its sign: no place rests there.
     """
     points, gaps, curvatures = taken(places, joints), np.empty(joints.size), np.empty(joints.size)
     points.moves[:], points.force[:] = True, forces
@@ -87,9 +94,12 @@ def points_at(
     missing |= points.at_point & (curves.corner[points.foot] == CORNER)
     settle(z, curves, points, gaps, curvatures, counters, 1)
     moved = np.abs(arcs_of(curves, points) - found) > RESTING * curves.span[pieces]
-    ends = curves.first[points.curve, None], curves.last[points.curve, None]
-    near = np.clip(pieces[:, None] + np.array([-1, 0, 1]), *ends)
-    missing |= moved & (np.ptp(curves.thickening[near] / curves.span[near], axis=1) > LEANING)
+    near = np.clip(
+        pieces[:, None] + np.array([-1, 0, 1]), curves.first[points.curve, None], curves.last[points.curve, None]
+    )
+    leans, turns = np.ptp(curves.thickening[near] / curves.span[near], axis=1), np.ptp(z[curves.angle[near]], axis=1)
+    flat = curvatures * curves.span[pieces] < turns * np.maximum(ALIKE, SPLINED * turns**2)
+    missing |= flat | (moved & (leans > LEANING))
     gaps[missing], curvatures[missing] = np.inf, 0.0
     return points, gaps, curvatures
 

@@ -176,6 +176,13 @@ def test_round_solids_stay_quiet(edge):
     assert audit(scene, answer).complaints == ()
 
 
+def test_an_answer_of_a_single_element_is_audited():
+    """Such a beam has no place between its ends."""
+    scene = scene_from(cantilever_data(force(0.0, 1.0), [1e-3 * RIGIDITY / LENGTH**2]))
+    found = audit(scene, fea_reference.answer(scene, fea_reference.Settings(elements=1)))
+    assert (found.complaints, found.stations, found.unbalance) == ((), 1, 0.0)
+
+
 def test_an_answer_without_internal_forces_is_not_audited():
     answer = answered("hinge", "shear")
     bare = replace(answer, stations=tuple(replace(station, beams={}) for station in answer.stations))

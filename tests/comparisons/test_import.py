@@ -169,7 +169,15 @@ def test_only_a_geo_file_is_run_as_a_program(tmp_path, capsys, name, text, words
 
 def test_a_file_that_is_not_there_is_named(tmp_path, capsys):
     assert run(["import", str(tmp_path / "no.geo"), "--thickness", "1", "--width", "9"]) == 2
-    assert "no.geo: found no such file" in capsys.readouterr().err
+    assert "no.geo' does not exist" in capsys.readouterr().err
+
+
+def test_layers_and_files_keep_their_accents(tmp_path):
+    path = tmp_path / "3 Träger.csv"
+    path.write_text("x,y\n0,0\n30,1\n60,0\n", encoding="utf-8")
+    assert import_of(path) == 0
+    scene = read(tmp_path / "_3_Träger.toml")
+    assert (scene.name, [*scene.beams]) == ("_3_Träger", ["_3_Träger"])
 
 
 def test_points_of_a_line_are_a_line():

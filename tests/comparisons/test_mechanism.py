@@ -40,7 +40,7 @@ def test_a_file_opens_as_a_built_in_case_does(tapered, tmp_path):
 
 def test_reprs_are_short(tapered, compared):
     answer = compared.runs.answers["fea"]
-    assert repr(tapered.scene) == "<Scene tapered: 1 beams, 0 contacts, 5 probes>"
+    assert str(tapered.scene) == repr(tapered.scene) == "<Scene tapered: 1 beams, 0 contacts, 5 probes>"
     assert repr(answer) == "<Answer tapered by fea: COMPLETED, 4 stations>"
     assert len(repr(compared)) < 100
 

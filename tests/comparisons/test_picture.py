@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,10 +11,12 @@ import cprbm
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
+from comparisons.formats import display_unit
+from comparisons.geometry import longest
 from comparisons.pairing import Solvers, paired
-from comparisons.present import figures
+from comparisons.present import curves, figures
 from comparisons.present.curves import curve_figures
-from comparisons.present.picture import bounds_of, carried, outline_of, view_of
+from comparisons.present.picture import Arrow, Bounds, bounds_of, carried, outline_of, view_of
 from comparisons.present.strips import left_of, with_stresses
 from comparisons.present.view import force_block
 from cprbm_scene import (
@@ -158,6 +161,15 @@ def test_limits_span_the_shown_colours_and_arrows(solved):
     assert max(np.hypot(*vector) for vector in vectors if vector is not None) == pytest.approx(0.13 * bounds.size)
 
 
+def test_a_flat_picture_has_room_for_its_arrows():
+    """A level strip of 100 by 2: the arrow from below has 13 % of the length."""
+    push = Arrow("push", "pin", "strip", np.array([[50.0, -1.0]]), np.array([[0.0, 7.0]]))
+    bounds = Bounds(np.array([0.0, -1.0]), np.array([100.0, 1.0]), 0.0, 1.0, {"push": 7.0})
+    wide = bounds.around([push])
+    assert (*wide.low, *wide.high) == pytest.approx((0.0, -14.0, 100.0, 1.0))
+    np.testing.assert_array_equal(bounds.around([]).high, bounds.high)
+
+
 def test_the_rays_of_a_stop_turn_with_its_body(jumping):
     """The body of the stop turns by the angle of the station, and two of the four rays with it."""
     scene = jumping.scene
@@ -195,6 +207,19 @@ def test_a_curve_needs_two_stations_and_may_go_back(hinge, right):
     (path,) = of(load.model_copy(update={"stations": (0.3, 0.6), "shown": (0.6,)}), back)
     assert path.name == "path-M"
     assert path.caption.startswith("Rotation")
+
+
+def test_a_contact_in_a_point_is_shown_on_a_part_of_its_beam(solved, monkeypatch):
+    """The finite elements press over 1e-4 of a beam: the figure shows a twentieth, and no wide zone."""
+    scene, answer, _ = solved
+    monkeypatch.setattr(curves, "panels_figure", lambda name, caption, abscissa, panels, **_: panels)
+    where = SimpleNamespace(where=(answer.stations[-1].stage, answer.stations[-1].value))
+    compared = SimpleNamespace(scene=scene, rows=[where], runs=SimpleNamespace(pair=(answer, answer)))
+    (panels,) = curves.contact_figures(compared)
+    factor, _ = display_unit(scene, "m", longest(scene))
+    for panel in panels:
+        shown = factor * np.ptp(np.concatenate([s for s, *_ in panel.lines]))
+        assert 0.05 * longest(scene) <= shown * (1.0 + 1e-9) < 0.06 * longest(scene)
 
 
 def test_a_window_shows_the_beams_alone_where_the_rest_is_twice_as_large(solved):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.present.columns import Column, Table, columns_of, table_of
-from comparisons.present.table import html_cells, screen_text
+from comparisons.present.table import brief_lines, html_cells, screen_text
 
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 TABLE = Table(
@@ -99,6 +99,16 @@ def test_sentences_fold_between_words_and_names_fold_anywhere():
     lines = lines_of(Table("Long", ("probe", "CPRBM"), ((name, "1.2345"),)), 40)
     assert max(map(len, lines)) <= 40
     assert "".join(re.sub(r"[^x.a-z]", "", line.split("1.2345")[0]) for line in lines[4:]) == name
+
+
+def test_names_of_a_brief_table_fold_behind_points_spaces_and_underscores():
+    names = "pin.closing_load", "left arm.bending_stress", "tip.displacement x", "a_long_name_of_a_pin.force", "p.angle"
+    table = Table("", ("probe", "CPRBM"), tuple((name, "1.23450e-04") for name in names))
+    lines = [line.replace("1.23450e-04", "").rstrip() for line in brief_lines(table, width=27)]
+    assert [COLOURS.sub("", line).rstrip() for line in lines[2:]] == [
+        *("pin.", "closing_load", "left arm.", "bending_stress", "tip.", "displacement x"),
+        *("a_long_name_", "of_a_pin.force", "p.angle"),
+    ]
 
 
 VALUES = st.floats(min_value=-1e9, max_value=1e9, allow_nan=False)

@@ -42,7 +42,6 @@ def _run(arguments, packages, folder):
     [
         (["robustness", "--scenes", "3"], "robustness"),
         (["robustness", "--help"], "robustness"),
-        (["stress", "--scenes", "3"], "stress"),
         (["study", "relations", "tapered"], "study relations"),
         (["bench", "hinge", "--method", "ipopt"], "bench --method ipopt"),
         (["bench", "hinge", "--method", "auto", "--method", "slsqp"], "bench --method slsqp"),
@@ -68,24 +67,6 @@ def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
     assert data["tolerance"] is None
 
 
-@pytest.mark.parametrize(
-    ("arguments", "command"),
-    [
-        (["bench", "hinge", "--method", "trust-constr"], "bench --method trust-constr"),
-        (["regress", "hinge"], "regress"),
-        (["study", "readings"], "study readings"),
-        (["study", "materials", "--quiet"], "study materials"),
-        (["study", "materials", "--help"], "study materials"),
-    ],
-)
-def test_a_removed_command_is_refused_in_one_sentence(capsys, arguments, command):
-    assert run(arguments) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith(f"cprbm: 'cprbm {command}' is removed: ")
-    assert captured.err.count("\n") == 1
-
-
 def test_an_installed_package_lists_no_tools(installed, tmp_path):
     done = _run(["--help"], installed, tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
@@ -100,20 +81,12 @@ def test_an_installed_package_lists_no_study_of_a_checkout(installed, tmp_path):
     assert "relations" not in done.stdout
 
 
-def test_a_checkout_lists_its_tools_under_their_new_names(capsys):
+def test_a_checkout_lists_its_tools(capsys):
     assert run(["--help"]) == 0
     listed = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
     assert "robustness" in listed
-    assert "stress" not in listed
 
 
-def test_an_old_name_runs_the_tool_and_names_the_new_one(capsys):
-    assert run(["stress", "--help"]) == 0
-    captured = capsys.readouterr()
-    assert "--replay" in captured.out
-    assert captured.err == "cprbm: 'cprbm stress' is now 'cprbm robustness'; the next release drops the old name.\n"
-
-
-@pytest.mark.parametrize("name", [name for name, tool in commands.TOOLS.items() if tool.purpose])
+@pytest.mark.parametrize("name", [name for name, tool in commands.TOOLS.items() if tool[1]])
 def test_the_list_of_commands_says_of_a_tool_what_its_own_help_does(name):
-    assert commands.load_tool(name).command.help.splitlines()[0] == commands.TOOLS[name].purpose
+    assert commands.load_tool(name).command.help.splitlines()[0] == commands.TOOLS[name][1]

@@ -29,6 +29,7 @@ WORDS = [
     (["compare", "gripper_driven"], "is 'gripper-driven' meant?"),
     (["solve", "zzz"], "found 'zzz'; allowed: a built-in case (five-bar, "),
     (["solve", "mine"], "found 'mine' (is the file mine.toml meant?)"),
+    (["sweep", "hinge", "--sample", "absent.csv"], "absent.csv: found a file that cannot be read (No such file"),
     (["solve", "mnie.toml"], "No such file", "is mine.toml meant?", "'cprbm new NAME' writes a scene"),
     (["solve", "hinge", "--slover", "fea"], "'--slover'", "'--solver'?", "Try 'cprbm solve --help'"),
     (["solve", "hinge", "--solver", "fem"], "'fem'", "'cprbm', 'fea', 'exact', 'solid'"),

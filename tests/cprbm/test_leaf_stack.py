@@ -1,5 +1,8 @@
 """A stack of four leaves without gap: the closed set has hundreds of places with hardly any gap and force."""
 
+from math import cos, sin
+
+import numpy as np
 import pytest
 
 import cprbm
@@ -9,9 +12,10 @@ from tests.together.pivots import line, weld
 LEAVES = (200.0, 160.0, 120.0, 80.0)
 
 
-def leaves(overlap, lengths=LEAVES, stations=(0.1, 1.0)):
+def leaves(overlap, lengths=LEAVES, stations=(0.1, 1.0), thicknesses=(1.0,) * 4):
     """Leaves side by side, clamped together and loaded at the tip of the longest; the second overlaps the first."""
-    heights = [float(k) - overlap * (k == 1) for k in range(len(lengths))]
+    means = 0.5 * (np.array(thicknesses[:-1]) + thicknesses[1:])
+    heights = np.append(0.0, np.cumsum(means) - overlap * (np.arange(len(means)) == 0)).tolist()
     free, tip = {"joint": "free"}, {"joint": "weld", "point": "T"}
     return scene_from(
         {
@@ -26,20 +30,22 @@ def leaves(overlap, lengths=LEAVES, stations=(0.1, 1.0)):
             "beams": {
                 f"leaf{k}": {
                     "curve": {"kind": "line", "start": [0.0, y], "end": [length, y]},
-                    "thickness": 1.0,
+                    "thickness": thickness,
                     "width": 20.0,
                     "material": "steel",
                     "start": {"joint": "weld", "point": f"A{k}"},
                     "end": free if k else tip,
                 }
-                for k, (y, length) in enumerate(zip(heights, lengths, strict=True))
+                for k, (y, length, thickness) in enumerate(zip(heights, lengths, thicknesses, strict=True))
             },
-            "contacts": {f"c{k}": {"kind": "beam-beam", "between": [f"leaf{k}", f"leaf{k + 1}"]} for k in range(3)},
+            "contacts": {
+                f"c{k}": {"kind": "beam-beam", "between": [f"leaf{k}", f"leaf{k + 1}"]} for k in range(len(means))
+            },
             "loads": {"F": {"kind": "force", "point": "T", "direction": [0.0, 1.0]}},
             "stages": [{"name": "load", "steps": "F", "stations": list(stations)}],
             "probes": [
                 {"of": "T", "quantity": "displacement"},
-                *({"of": f"c{k}", "quantity": "force"} for k in range(3)),
+                *({"of": f"c{k}", "quantity": "force"} for k in range(len(means))),
             ],
         }
     )
@@ -70,6 +76,40 @@ def test_joints_with_a_shared_force_keep_the_force_of_their_leader():
     assert coarse.completed, coarse.sentence
     tips = [answer.stations[-1].values["T.displacement"][1] for answer in (coarse, fine)]
     assert tips[0] == pytest.approx(tips[1], rel=1e-4)
+
+
+def test_nested_arcs_that_touch_as_drawn_touch_along_their_length():
+    """The splines of both arcs leave minima of 1e-10 between the joints.  Reference: 320 finite elements."""
+    radii, spans, arc = (100.0, 99.0, 98.0), (0.5, 0.38, 0.25), {"kind": "arc", "center": [0.0, -100.0]}
+    data = {
+        "name": "arcs",
+        "units": {"length": "mm", "force": "N", "angle": "deg", "stress": "MPa"},
+        "materials": {"steel": {"youngs_modulus": 200000.0, "poisson_ratio": 0.3}},
+        "bodies": {"ground": {"motion": "fixed", "points": {f"A{k}": [0.0, r - 100.0] for k, r in enumerate(radii)}}},
+        "beams": {
+            f"leaf{k}": {
+                "curve": {
+                    **arc,
+                    "start": [0.0, r - 100.0],
+                    "end": [r * sin(span), r * cos(span) - 100.0],
+                    "direction": "clockwise",
+                },
+                "thickness": 1.0,
+                "width": 15.0,
+                "material": "steel",
+                "start": {"joint": "weld", "point": f"A{k}"},
+                "end": {"joint": "free", "point": f"T{k}"},
+            }
+            for k, (r, span) in enumerate(zip(radii, spans, strict=True))
+        },
+        "contacts": {f"c{k}": {"kind": "beam-beam", "between": [f"leaf{k}", f"leaf{k + 1}"]} for k in range(2)},
+        "loads": {"F": {"kind": "force", "point": "T0", "direction": [0.0, -1.0]}},
+        "stages": [{"name": "load", "steps": "F", "stations": [1.0, 20.0]}],
+        "probes": [{"of": "T0", "quantity": "displacement"}],
+    }
+    answer = cprbm.answer(scene_from(data))
+    assert answer.completed, answer.sentence
+    assert answer.stations[-1].values["T0.displacement"] == pytest.approx([-3.8489e-4, -1.08306e-3], rel=1e-4)
 
 
 def test_a_point_of_contact_between_leaves_of_nearly_equal_curvature_is_certified():

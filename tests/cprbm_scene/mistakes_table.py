@@ -56,7 +56,7 @@ SECTIONS = {
             ("beams/beam1/curve/kind", "spiral", "one of 'line', 'arc'"),
             ("beams/beam1/curve/kind", REMOVED, "nothing; one of 'line', 'arc'"),
             ("beams/beam1/curve/start", [0.0], "beams.beam1.curve.start[1]", "an item"),
-            ("beams/beam1/curve/start", [0.0, 1.0, 2.0], "[0.0, 1.0, 2.0]; 2 of them"),
+            ("beams/beam1/curve/start", [0.0, 1.0, 2.0], "[0.0, 1.0, 2.0]; 2 items"),
             ("beams/beam1/curve/start", 0.0, "a list"),
             ("beams/beam1/curve/direction", "left", "'counterclockwise' or 'clockwise'"),
             ("beams/beam1/start/joint", "glue", "one of 'weld', 'pin', 'free'"),
@@ -101,7 +101,7 @@ SECTIONS = {
                 (t, {f"n{k}": next(iter(HINGE[t].values())) for k in range(257)}, "at most 256")
                 for t in ("beams", "bodies")
             ),
-            ("contacts", {f"n{k}": HINGE["contacts"]["contact"] for k in range(1001)}, "at most 1000 of them"),
+            ("contacts", {f"n{k}": HINGE["contacts"]["contact"] for k in range(1001)}, "at most 1000 items"),
         ),
     ),
     "references of the hinge": (
@@ -513,7 +513,7 @@ SECTIONS = {
         "contacts/touch/",
         False,
         (
-            ("points", [[0.0, 0.0]], "at least 2 of them"),
+            ("points", [[0.0, 0.0]], "at least 2 items"),
             ("points", [[0.0, 0.0], [0.0, 0.0]], "contacts.touch.points[1]", "0 m from the one before"),
             ("points", [[-0.1, 0.0], [0.2, 0.0], [0.1, 0.0]], "contacts.touch.points[1]", "turns back on itself"),
             ("points", [[0.0, -0.1], [0.1, -0.1], [0.1, -0.05], [0.05, -0.2]], "meet itself"),
@@ -567,7 +567,7 @@ SECTIONS = {
         (
             ("range", [0.1, 0.1], "two different values"),
             ("range", [0.0, 1e-12], "between 1e-06 and 1e+06 of the beam's length"),
-            ("coefficients", [0.0], "at least 2 of them"),
+            ("coefficients", [0.0], "at least 2 items"),
             ("coefficients", [0.0, 100000.0], "a slope of at most 1000"),
             ("side", "left", "one of 'above' or 'below'"),
             *((key, REMOVED, "required") for key in ("axis", "coefficients", "range", "side")),
@@ -752,7 +752,7 @@ SECTIONS = {
             ("t/tolerance/normal", 0.0, "greater than 0"),
             ("t/size", 1.0, "names no key here"),
             ("half/unit", "mm", "parameters.half", "an expression"),
-            ("E/value", 1e305, "parameters.E", "1e+305; a finite number in GPa"),
+            ("E/value", 1e305, "parameters.E", "1e+305; a finite number, as 1.9GPa"),
         ),
     ),
     "expressions": (

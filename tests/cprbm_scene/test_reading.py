@@ -19,7 +19,7 @@ from cprbm_scene.mistakes import MOST
 from cprbm_scene.notes import notes
 from cprbm_scene.reading import DEEPEST
 from cprbm_scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Record, Units
-from cprbm_scene.units import LONGEST
+from cprbm_scene.units import LONGEST, SIZES
 from tests.cprbm_scene.editing import (
     BOWED,
     CIRCULAR,
@@ -58,7 +58,7 @@ REFUSED = [
     *((text, "no TOML") for text in (b"name = ", b"[beams", b"a = 1\na = 2", b"\0")),
     *((b"a = " + text * 99_999, "text that is no TOML") for text in (b"[", b"{a=", b"9")),
     (b"\x7fELF\x80\xff\xfe", "no UTF-8 text (at byte 4)"),
-    (b"#" * (LONGEST + 1), "a file that is larger; allowed: at most 1 MB"),
+    (b"#" * (LONGEST + 1), "a file that is larger; allowed: TOML in UTF-8"),
     # the parser takes the square of the number of parts
     *(
         (begin + b".".join([name] * 100_000) + end, MANY_PARTS)
@@ -164,7 +164,7 @@ def test_a_stage_has_so_many_stations_at_most_and_none_of_them_twice():
     )
     assert len(scene_from(data).stages[0].stations) == 10_001
     more = ("stages/0/stations/10001", 0.37)
-    assert "at most 10001 of them" in mistakes(more, base=data)["stages[0].stations"]
+    assert "at most 10001 items" in mistakes(more, base=data)["stages[0].stations"]
     again = ("stages/0/stations", [0.3, 0.1, 0.2, 0.1 * (1.0 + 3e-10), 0.3 * (1.0 + 3e-9)])
     found = mistakes(again, base=data)
     assert list(found) == ["stages[0].stations[3]"]
@@ -222,9 +222,9 @@ WRONG_TABLES = [
     (b"x,y\n0,0\n1\n", "'' in p.csv, row 3, column y"),
     (b"x,y\n0,nan\n", "'nan' in p.csv, row 2, column y"),
     (b"x,y\n0,0\n1,1e400\n", "'1e400' in p.csv, row 3, column y"),
-    (b"x,y\n0,0\n1,1\n", "at least 3 of them"),
+    (b"x,y\n0,0\n1,1\n", "at least 3 items"),
     (b"\xff\xfe", "p.csv', bytes that are no UTF-8 text (at byte 0); allowed: a table of points"),
-    (b"x,y\n" + b"0,0\n" * 300_000, "p.csv', a file that is larger; allowed: at most 1 MB of points"),
+    (b"x,y\n" + b"0,0\n" * 300_000, "p.csv', a file that is larger; allowed: a table of points in UTF-8"),
 ]
 
 
@@ -419,6 +419,16 @@ def test_a_scene_in_millimetres_kilonewtons_degrees_and_gigapascals_is_read_in_s
     assert all(claim.bound == 0.03 for claim in scene.claims)
 
 
+def test_a_psi_is_a_pound_on_a_square_inch():
+    sizes = {name: float(SIZES[name]) for name in ("in", "lbf", "psi")}
+    assert sizes == {"in": 0.0254, "lbf": 4.4482216152605, "psi": pytest.approx(6894.757293168, rel=1e-13)}  # NIST
+    data = edited(("units", {"force": "lbf", "stress": "psi"}), base=two_lines(0.01))
+    name = next(iter(data["materials"]))
+    data["materials"][name]["youngs_modulus"] = "= 330000*p"
+    data["parameters"] = {"p": {"value": 1.0, "unit": "lbf/in^2"}}
+    assert scene_from(data).materials[name].youngs_modulus == pytest.approx(330e3 * sizes["psi"], rel=1e-13)
+
+
 def test_a_scene_that_states_si_is_the_scene():
     units = {"length": "m", "force": "N", "angle": "rad", "stress": "Pa"}
     for data in map(cases.data, cases.scenes()):
@@ -501,8 +511,8 @@ def test_a_setting_replaces_a_value(setting, thickness):
 WRONG_SETTINGS = [
     ({"x": 1.0}, "parameters.x: found 'x', which names no parameter"),
     ({"t": "3mm"}, "parameters.t.value: found 3 mm; allowed: a number from 1.6 to 2.4 mm"),
-    ({"t": "2deg"}, "parameters.t: found '2deg'; allowed: a finite number in mm"),
-    ({"t": "thin"}, "parameters.t: found 'thin'; allowed: a finite number in mm, such as 1.9mm"),
+    ({"t": "2deg"}, "parameters.t: found '2deg'; allowed: a finite number, as 1.9mm"),
+    ({"t": "thin"}, "parameters.t: found 'thin'; allowed: a finite number, as 1.9mm"),
     ({"t": math.nan}, "parameters.t: found nan; allowed: a finite number"),
     ({"t": "1e400mm"}, "parameters.t: found '1e400mm'; allowed: a finite number"),
     ({"half": "1mm"}, "an expression alone; an expression takes no other value"),

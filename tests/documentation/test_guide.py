@@ -1,14 +1,13 @@
 """What the ten-minute guide has its readers write is a scene, and it gives what the guide says."""
 
-import math
 import re
 
 import pytest
 
-import cprbm
-import fea_reference
+from comparisons.cli.main import run
 from cprbm_scene import read
 from tests.documentation.pages import DOCS
+from tests.documentation.test_tutorials import same_text
 
 GUIDE = DOCS / "guide.md"
 
@@ -26,22 +25,11 @@ def test_the_parts_of_the_guide_are_the_scene_of_the_gallery(latch):
     assert latch.model_dump(exclude={"file"}) == theirs.model_dump(exclude={"file"})
 
 
-def test_the_numbers_of_the_guide_come_out(latch):
-    """The guide's table at 15 mm; it shows five digits, of both solvers in shear, the default theory."""
-    table = re.search(r"^    probe .*?\n    next", GUIDE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)[0]
-    chain = cprbm.answer(latch, cprbm.Settings(links=40)).stations[-1].values
-    settings = fea_reference.Settings(elements=80, kinematics="shear")
-    elements = fea_reference.answer(latch, settings).stations[-1].values
-    shown = {}
-    for line in table.splitlines():
-        if found := re.match(r"    (\w+\.\w+)( [xy])? +\S+ +(-?[\d.]+) +(-?[\d.]+)", line):
-            shown[found[1], (found[2] or "").strip()] = float(found[3]), float(found[4])
-    for probe, component, place, factor in (
-        ("tip.displacement", "x", 0, 1e3),
-        ("tip.displacement", "y", 1, 1e3),
-        ("tip.reaction", "y", 1, 1.0),
-        ("hook.rotation", "", 0, math.degrees(1.0)),
-        ("pin.force", "", 0, 1.0),
-    ):
-        answers = [factor * answer[probe][place] for answer in (chain, elements)]
-        assert shown[probe, component] == pytest.approx(answers, rel=1e-4)
+def test_the_guide_shows_what_the_command_prints(latch, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert run(["compare", latch.file]) == 0
+    shown = re.search(r"^    latch: .*?\n    next[^\n]*", GUIDE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)[
+        0
+    ]
+    printed = capsys.readouterr().out
+    assert same_text(shown, printed.replace(latch.file, "latch.toml")), printed

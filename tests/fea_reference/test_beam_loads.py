@@ -25,7 +25,7 @@ def test_the_whole_tangent(kinematics, bowed):
     def at(z):
         return assemble(model, {}, 6, values, State.of(z), model.initial_constraints)
 
-    tangent = at(z).tangent.toarray()
+    tangent = at(z).tangent.matrix.toarray()
     for i in range(model.size):
         step = np.zeros(model.size)
         step[i] = 1e-6

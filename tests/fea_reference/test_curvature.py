@@ -25,7 +25,7 @@ def dense(model, system):
 
     M by hand: half of both neighbours' lengths on a node's x, y and θ, one on a body's three motions.
     """
-    K = system.tangent.toarray()
+    K = system.tangent.matrix.toarray()
     rows = np.concatenate([model.multipliers, model.element_dofs[6]])
     motions = np.setdiff1d(np.arange(model.size), rows)
     M = np.zeros(model.size)

@@ -138,7 +138,7 @@ def test_the_whole_tangent_with_guides_drives_and_loads():
         return assemble(model, {}, 6, values, State.of(z), model.initial_constraints)
 
     bodies = np.concatenate([body.dofs for body in model.bodies if body.dofs is not None])
-    tangent = at(z).tangent.toarray()
+    tangent = at(z).tangent.matrix.toarray()
     assert tangent == pytest.approx(tangent.T, abs=1e-12 * np.abs(tangent).max())
     for i in range(model.size):
         step = np.zeros(model.size)

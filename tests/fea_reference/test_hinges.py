@@ -39,7 +39,7 @@ def test_the_whole_tangent():
     def at(z):
         return assemble(model, {}, 6, np.array([0.3]), State.of(z), model.initial_constraints)
 
-    tangent = at(z).tangent.toarray()
+    tangent = at(z).tangent.matrix.toarray()
     assert tangent == pytest.approx(tangent.T, abs=1e-12 * np.abs(tangent).max())
     for i in range(model.size):
         step = np.zeros(model.size)

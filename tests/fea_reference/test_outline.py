@@ -106,7 +106,7 @@ def test_a_distance_far_along_an_edge_has_all_its_digits(edge):
     if edge == "a corner":
         y = ends[:, :1] + 0.0037 * np.array([np.cos(along + 1.0), np.sin(along + 1.0)])
     rest = rng.uniform(-1.0, 1.0, y.shape) * 1e-16
-    found = outline.exact_distance(y, rest)
+    found = outline.exact_distance(y, rest, outline.near(y))
     with localcontext() as context:
         context.prec = 50
         for i in range(along.size):

@@ -98,8 +98,13 @@ def test_limits_that_no_point_meets(scene):
         ('[goal]\nprobe = "B.displacement"\n', [], "allowed: 'x', 'y'"),
         ('[goal]\nprobe = "B.displacement"\ncomponent = "y"\naim = "reach"\n', [], "a value with aim = 'reach'"),
         ('[[limits]]\nprobe = "B.displacement"\ncomponent = "y"\n', [], "neither least nor most"),
+        (
+            '[[limits]]\nprobe = "B.displacement"\ncomponent = "y"\nleast = 2\nmost = 1\n',
+            [],
+            "limits[0].least: found 2; allowed: a number of at most 1",
+        ),
         ("", [], "[goal] with a probe"),
-        ('[goal]\nprobe = "B.displacement"\ncomponent = "y"\n', ["--vary", "t=1N..2N"], "a finite number in mm"),
+        ('[goal]\nprobe = "B.displacement"\ncomponent = "y"\n', ["--vary", "t=1N..2N"], "a finite number, as 1.9mm"),
         ('[goal]\nprobe = "B.displacement"\ncomponent = "y"\n', ["--vary", "d=1..2"], "names no parameter"),
     ],
 )

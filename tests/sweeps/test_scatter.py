@@ -122,7 +122,8 @@ def test_failing_points_are_counted(scene, tmp_path):
         (["--sobol"], "two or more"),
         (["--samples", "1000"], "a power of 2"),
         (["--limits", "LIMITS"], "limits[0].probe"),
-        (["--limits", "absent.toml"], "No such file"),
+        (["--limits", "absent.toml"], "File 'absent.toml' does not exist"),
+        (["--limits", "GOAL"], "limits: found nothing; allowed: [[limits]] with a probe"),
         (["--on", "remote"], "local:N"),
         (["--samples", "16", "--set", "t=2.99mm"], "without a valid scene"),
     ],
@@ -130,7 +131,9 @@ def test_failing_points_are_counted(scene, tmp_path):
 def test_a_wrong_question_is_a_sentence(scene, tmp_path, capsys, options, said):
     limits = tmp_path / "limits.toml"
     limits.write_text('[[limits]]\nprobe = "C.displacement"\nmost = 1.0\n', "utf-8")
-    options = [str(limits) if each == "LIMITS" else each for each in options]
+    goal = tmp_path / "goal.toml"
+    goal.write_text('[goal]\nprobe = "B.displacement"\ncomponent = "y"\n', "utf-8")
+    options = [{"LIMITS": str(limits), "GOAL": str(goal)}.get(each, each) for each in options]
     out = tmp_path / "out"
     assert run(["tolerance", str(scene), "--out", str(out), *options]) == 2
     error = capsys.readouterr().err

@@ -18,6 +18,7 @@ import pytest
 import comparisons
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.sweeps import tables
 from comparisons.sweeps.demands import Measure
 from comparisons.sweeps.outcome import Outcome
 from comparisons.sweeps.points import Axis
@@ -66,7 +67,7 @@ def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(sce
     assert len(last) == 6
     assert {row["unit"] for row in rows} == {"mm"}
     assert last[0]["load B.displacement.y, mm"] == rows[3]["value"]
-    assert "cantilever: 6 unchecked." in capsys.readouterr().out
+    assert "cantilever: 6 points, unchecked." in capsys.readouterr().out
     page = (tmp_path / "s" / "index.html").read_text("utf-8")
     assert "t = 1.6 mm to t = 2.4 mm (3 values)" in page
     lines = len((tmp_path / "s" / "outcomes.jsonl").read_text("utf-8").splitlines())
@@ -154,10 +155,46 @@ def test_a_table_of_a_single_point_has_a_page(scene, tmp_path):
     assert (tmp_path / "s" / "index.html").exists()
 
 
-def test_a_row_with_too_few_values_is_named(scene, tmp_path, capsys):
-    (tmp_path / "points.csv").write_text("t,L\n1.7mm,95\n1.9mm\n", "utf-8")
+def test_a_table_may_have_comments_and_semicolons(scene, tmp_path):
+    (tmp_path / "points.csv").write_bytes(b"# measured\r\n\r\nt;L\r\n1.7mm; 95\r\n\r\n1.9mm;100mm\r\n")
+    assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 0
+    assert [row["L, mm"] for row in table(tmp_path / "s", "last.csv")] == ["95.0", "100.0"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t,L\n1.7mm,95\n# thin\n1.9mm\n", "row 4: found 1 values of t, L; allowed: a value for every name"),
+        ("t,t\n1.7,1.8\n", "row 2: found 2 values of t, t; allowed: a value for every name, each name once"),
+        ("t\n1,7\n", "row 2: found 2 values of t;"),
+        ("t\n1.7\nthin\n", "row 3: found 'thin'; allowed: a finite number, as 1.9mm"),
+        ("thick\n1.7\n", "row 2: found 'thick', which names no parameter; allowed: the name of a parameter: 't', 'L'"),
+        ("t\n", "found 0 rows below the names t"),
+        ("", "found 0 rows below the names (none)"),
+    ],
+)
+def test_a_wrong_table_is_named_with_its_row(scene, tmp_path, capsys, text, said):
+    (tmp_path / "points.csv").write_text(text, "utf-8")
     assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 2
-    assert "found row 2 with 1 of 2 values below the names t, L" in capsys.readouterr().err
+    assert f"points.csv: {said}" in capsys.readouterr().err
+
+
+def test_figures_leave_out_numbers_that_do_not_depend_on_the_parameters(scene):
+    """The drop at the first station alone depends on the point; the shift is the same but for round-off."""
+    record = {"stage": "load", "probe": "B.displacement", "branch": 0, "arc_length": None}
+
+    def outcome(drop, round_off):
+        values = {"x": (-1e-3, -2e-3 + round_off), "y": (drop, -5e-3)}
+        return Outcome("cprbm", "COMPLETED", "", numbers=tuple(
+            {**record, "component": name, "station": station, "value": value}
+            for name, pair in values.items() for station, value in zip((0.5, 1.0), pair, strict=True)
+        ))  # fmt: skip
+
+    def shown(*outcomes):
+        return [each.name for each in tables.dependent(read(scene), [(None, each) for each in outcomes])]
+
+    assert shown(outcome(-3e-3, 0.0), outcome(-4e-3, 1e-16)) == ["B.displacement.y"]
+    assert shown(outcome(-3e-3, 0.0)) == ["B.displacement.x", "B.displacement.y"]
 
 
 POISONED = """
@@ -245,7 +282,7 @@ def test_kills_of_the_parent_end_in_the_same_table(scene, tmp_path):
     ("options", "said"),
     [
         (["--vary", "thickness=1mm..2mm:3"], "names no parameter"),
-        (["--vary", "t=1N..2N:3"], "a finite number in mm"),
+        (["--vary", "t=1N..2N:3"], "a finite number, as 1.9mm"),
         (["--vary", "t=1mm..5mm:3"], "a number from 1 to 3 mm"),
         (["--vary", "t=1mm..2mm:1"], "two values or more"),
         (["--vary", "t=1mm..2mm"], "without a number of values"),
