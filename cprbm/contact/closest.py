@@ -39,7 +39,7 @@ LEAST_CURVATURE = 0.1
 """Share of |C'|² below which the second derivative is replaced by |C'|²: a step of descent far from the minimum."""
 
 PASSED_OVER = 1e-9
-"""Share of a distance by which chords must be farther away to be passed over: more than round-off."""
+"""Distance, over the longest beam, by which chords must be farther away to be passed over: more than round-off."""
 
 GROUPS = 64
 """Most groups of pieces that wait in a search: half of them hold 2^32 pieces."""
@@ -256,7 +256,7 @@ def closest_of(
         group = waiting[size]
         piece = first + group - count
         at, distance = _to_chord(chords[2 * first + group], x, y)
-        if distance - chords[2 * first + group, 4] > (1.0 + PASSED_OVER) * min(best, bound):
+        if distance - chords[2 * first + group, 4] > min(best, bound) + PASSED_OVER:
             continue
         if group < count:
             waiting[size], waiting[size + 1], size = 2 * group + 1, 2 * group, size + 2

@@ -215,7 +215,7 @@ def contact_places(
     corner_sides: Array,
     old: Places,
     closed: Flags,
-    stay_open: Flags,
+    keep_sides: Flags,
     counters: Ints,
 ) -> tuple[Places, Flags]:  # pragma: no cover
     """Fixed places at the nearest feet with the moving places of ``old``, and marks of the closed among both.
@@ -228,7 +228,7 @@ def contact_places(
         sites: of the geometry.
         sides, corner_sides: of the contacts.
         old, closed: the known places.
-        stay_open: known places of pairs that overlap (their sides do not change).
+        keep_sides: known places that do not change the side.
         counters: count the searches.
     """
     nothing = np.zeros(curves.first.size, np.bool_)
@@ -249,9 +249,9 @@ def contact_places(
             marks[k], fixed.force[k], fixed.side[k] = True, old.force[j], old.side[j]
             fixed.piece[k], fixed.xi[k], fixed.foot[k], fixed.eta[k] = old.piece[j], old.xi[j], old.foot[j], old.eta[j]
         elif between:
-            if j >= 0 and (stay_open[j] or old.side[j] != 0.0):
+            if j >= 0 and (keep_sides[j] or old.side[j] != 0.0):
                 fixed.side[k] = old.side[j]
-            if j < 0 or not stay_open[j]:
+            if j < 0 or not keep_sides[j]:
                 _turn_side(z, curves, fixed, k, counters, room, weights)
         if curves.angle[fixed.piece[k]] < 0:
             fixed.side[k] = corner_sides[curve]

@@ -186,7 +186,9 @@ class Driver:
                     closing |= apart_pairs(self.solved, overlap.overlapping)
                     awaited -= overlap.met
                     # pairs that overlap keep the sides that they have at the begin
-                    start = replace(start, contacts=with_fixed_places(self.system.geometry, start.z, start.contacts))
+                    start = replace(
+                        start, contacts=with_fixed_places(self.system.geometry, start.z, start.contacts, turning=True)
+                    )
             solved = solve(1.0)
             # an event is not sought in a step that is too long
             turn = turned(self.solved, solved)

@@ -77,7 +77,7 @@ def touched_equilibrium(
         return solve_set(system, start, iterations, springs)
     corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
     contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
-    contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts), False, start.z
+    contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts, turning=True), False, start.z
     old = contacts.places
     for number in range(ROUNDS):
         try:

@@ -118,8 +118,11 @@ class Touched:
     iterations: int
 
 
-def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Contacts:
-    """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay."""
+def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts, *, turning: bool = False) -> Contacts:
+    """Contacts with fixed places at the nearest feet; known places keep force and state, moving places stay.
+
+    With ``turning`` known open places that came round an end change the side; not within a step, where places overlap.
+    """
     places, closed = contact_places(
         z,
         geometry.arrays,
@@ -128,7 +131,7 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts) -> Conta
         contacts.corner_sides,
         contacts.places,
         contacts.closed,
-        contacts.stay_open,
+        contacts.stay_open | (not turning),
         contacts.counters,
     )
     # a joint that shared a force may have been replaced by a point of contact
