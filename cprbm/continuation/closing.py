@@ -11,10 +11,10 @@ F        sum of the contact forces of a closed pair
 A step is solved with the rows frozen.  Where e < 0 at the end of the step, Brent's method locates the first zero of e.
 The step ends there, and the stop closes or opens.
 
-The gap of a pair may be least between two joints; a moving place without a force finds the minimum.
-The first closing is located on states with the pair kept open, by values and slopes of g along the tangent:
-g = −CLOSED there, so that the active set closes the pair in the least gap.  An opening is the zero of F, continued by
-−g where the pair is open.
+Pairs that are open at the begin of a step stay open in the step.  The gap of a pair may be least between two joints;
+a moving place without a force finds the minimum.  Where g < 0 at the end, the first closing is located by values and
+slopes of g along the tangent: g = −CLOSED there, so that the active set closes the pair in the least gap.  A gap that
+jumps has no zero, and the step is too long.  An opening is the zero of F, continued by −g where the pair is open.
 """
 
 from collections.abc import Callable
