@@ -136,8 +136,7 @@ def with_sides(model: Model, pair: Pair, z: State) -> Pair:
     away = end_distance(second, first)
     if away < end_distance(first, second) and away <= node_distance(first, second):
         pair, first, second = pair.exchanged(), second, first
-    side, side_m = side_of(first, second, pair.side), side_of(second, first, pair.side_m)
-    return pair if (side, side_m) == (pair.side, pair.side_m) else replace(pair, side=side, side_m=side_m)
+    return replace(pair, side=side_of(first, second, pair.side), side_m=side_of(second, first, pair.side_m))
 
 
 def _contact_ends(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:

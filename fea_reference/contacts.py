@@ -100,10 +100,26 @@ def with_current_sides(model: Model, pair: Contact, z: State) -> Contact:
 
 def open_contact(model: Model, pair: Contact, z: State) -> Contact:
     """An open contact in state ``z``; for two neighbouring beams with the sides of this state."""
-    if not isinstance(pair, Pair) or pair.roles is not None:
+    if not isinstance(pair, Pair) or pair.roles is not None or gap_lower_bound(model, pair, z) > FAR:
         return with_current_sides(model, pair, z)
-    apart = gap_lower_bound(model, pair, z) <= FAR and least_gap(model, pair, z) > _APART * pair.scale
-    return contact.with_sides(model, pair, z) if apart else pair
+    return contact.with_sides(model, pair, z) if least_gap(model, pair, z) > _APART * pair.scale else pair
+
+
+def around_end(model: Model, pair: Contact, before: State, after: State) -> Contact:
+    """The open contact; with the sides of state ``after`` if a beam came around an end of the other since ``before``.
+
+    A place beyond the other beam's end has no gap. Around the end, its gap appears at once, across the neutral line.
+    With the sides of ``after`` the beams are apart in both states.
+    """
+    if (
+        not isinstance(pair, Pair)
+        or pair.roles is not None
+        or least_gap(model, pair, after) >= -pair.distance - CLOSED * pair.scale
+    ):
+        return pair
+    renewed = contact.with_sides(model, pair, after)
+    apart = min(least_gap(model, *there) for there in ((pair, before), (renewed, before), (renewed, after)))
+    return renewed if apart >= 0.0 else pair
 
 
 def motion_before_contact(model: Model, pair: Contact, z: State) -> float:

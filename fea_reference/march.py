@@ -20,6 +20,7 @@ from fea_reference.carrying import at_ends
 from fea_reference.contact import least_at_ends
 from fea_reference.contacts import (
     CLOSED,
+    around_end,
     least_gap,
     motion_before_contact,
     motion_before_overlap,
@@ -326,7 +327,7 @@ class March:
                 Ending.STEP_TOO_SMALL,
                 f"beyond {self.described(load, start)} the nearest equilibrium is on another branch",
             )
-        touched = self.least_gap(system) < 0.0
+        touched, opened = self.least_gap(system) < 0.0, self.open
         changing = [stop for stop in self.model.stops if self.stop_margin(stop, system) < 0.0]
         if touched:
             known = {start: self.system, value: system}
@@ -337,9 +338,9 @@ class March:
                     f"the closing of a contact or stop beyond {self.described(load, start)} was not found",
                 )
             value, system = first_touch
-            side_change = self._value_before_side_change(known, value)
-            if side_change is not None:
-                value, system, touched = side_change, known[side_change], False
+            last, opened = self._before_side_change(known, value)
+            if opened != self.open:
+                value, system, touched = last, known[last], False
             alternating = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
             if alternating:
                 return (
@@ -350,7 +351,7 @@ class March:
         trouble = self.passing_failure(before, system, where) or self.slip_failure(system, where)
         if trouble is not None:
             return trouble
-        self.values[load], self.system = value, system
+        self.values[load], self.system, self.open = value, system, opened
         self.exchange_beams()
         if touched:
             self._close_tightly(load, value - start)
@@ -358,19 +359,15 @@ class March:
             self.switch_stops(load, changing)
         return None
 
-    def _value_before_side_change(self, known: Mapping[float, System], value: float) -> float | None:
-        """Last value before ``value`` at which a pair of beams lies on another side than assumed, or None.
+    def _before_side_change(self, known: Mapping[float, System], value: float) -> tuple[float, list[Contact]]:
+        """Last value before an overlap at ``value``, and the open contacts with the sides beyond the ends passed there.
 
         A closing starts without overlap. A point that faces another beam from the far side, around an end, has a gap
         as negative as its distance and is no closing.
         """
-        pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
-        if not any(least_gap(self.model, pair, known[value].z) < -pair.scale for pair in pairs):
-            return None
-        without_overlap = [lam for lam in known if self.least_gap(known[lam]) >= 0.0]
+        without_overlap = (lam for lam in known if self.least_gap(known[lam]) >= 0.0)
         last = min(without_overlap, key=lambda lam: abs(lam - value), default=value)
-        sides_differ = [open_contact(self.model, pair, known[last].z) for pair in self.open] != self.open
-        return last if sides_differ and last != value else None
+        return last, [around_end(self.model, pair, known[last].z, known[value].z) for pair in self.open]
 
     def _with_point_forces(
         self, tangent: PathTangent, penalties: Mapping[Contact, Penalty], z: State, step: float
