@@ -128,13 +128,17 @@ def _shot(strip: Strip, moment: float, force: float, outer: float, inner: float)
 
 def _along(strip: Strip, z: Array, begin: float, stop: float, moment: float, at: Array, force: Array) -> Array:
     """(x, y, θ, energy) at ``stop``, from those at ``begin``; a ``force`` acts beyond that, at a point ``at``."""
+    (x, y), (fx, fy) = at.tolist(), force.tolist()
+    first, low, change = 0.0, 0.0, 0.0
 
     def slope(s: float, z: Array) -> list[float]:
-        m = moment + (at[0] - z[0]) * force[1] - (at[1] - z[1]) * force[0]
-        bent = m / float(np.interp(s, strip.at, strip.values))
+        m = moment + (x - z[0]) * fy - (y - z[1]) * fx
+        bent = m / (low + change * (s - first))
         return [cos(z[2]), sin(z[2]), bent, 0.5 * m * bent]
 
     knots = [begin, *(s for s in strip.at if begin < s < stop), stop]
     for a, b in pairwise(knots):
+        low, high = np.interp([a, b], strip.at, strip.values).tolist()
+        first, change = a, (high - low) / (b - a) if b > a else 0.0
         z = end_of(slope, (a, b), z)
     return z
