@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from comparisons.studies import report
+
 from .declared import broken
 from .packages import Packages
 from .promises import RECORDED, recorded, text
@@ -15,7 +17,14 @@ from .today import today
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.usefixtures("unprinted")
+@pytest.fixture
+def brief_reports(monkeypatch):
+    """Chapters of convergence and run times with two sizes and a run of each: their keys are the same."""
+    monkeypatch.setattr(report, "SIZES", (20, 40))
+    monkeypatch.setattr(report, "REPEAT", 1)
+
+
+@pytest.mark.usefixtures("unprinted", "brief_reports")
 def test_every_promise_holds_or_its_change_is_declared(promised, changes):
     assert broken(promised, today(promised, changes), changes) == []
 

@@ -1,13 +1,15 @@
 """A slider with a round nose on a leaf spring under a dead force: only the contact holds the slider."""
 
+import math
+
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve, minimize_scalar
 
 import cprbm
 from cprbm_scene import Ending, Loss, scene_from
 from tests.cprbm.scenes import cantilever_data
+from tests.references.integrated import end_of
 
 LENGTH, PLACE, RADIUS, HALF = 0.1, 0.07, 0.005, 0.0005
 RIGIDITY = 2e11 * 0.01 * (2.0 * HALF) ** 3 / 12.0
@@ -48,12 +50,10 @@ def largest_weight():
 
             def rates(_, state):
                 _, _, tangent, moment = state
-                cos, sin = np.cos(tangent), np.sin(tangent)
+                cos, sin = math.cos(tangent), math.sin(tangent)
                 return [-cos, -sin, -moment / RIGIDITY, cos * down - sin * across]
 
-            x, _, tangent, _ = solve_ivp(rates, [0.0, arc], [0.0, 0.0, angle, 0.0], "DOP853", rtol=1e-8, atol=1e-10).y[
-                :, -1
-            ]
+            x, _, tangent, _ = end_of(rates, (0.0, arc), [0.0, 0.0, angle, 0.0], rtol=1e-8, atol=1e-10)
             return [tangent, (-x - offset * np.sin(angle) - PLACE) / PLACE]
 
         start[:] = fsolve(clamp, start)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
 
 from cprbm_scene import Arc, Line, Polynomial, Spline, scene_from
 from elastica_reference import Settings
@@ -18,6 +18,7 @@ from elastica_reference.spectral import Law, UnsolvableError, piece, rule
 from elastica_reference.way import Stepping
 from tests.elastica_reference import scenes
 from tests.references.hinge import PAPER
+from tests.references.integrated import end_of
 
 number = st.floats(-1.0, 1.0)
 
@@ -40,7 +41,7 @@ def integrated(law, q):
         F = q[4:6] - q[8:] * (s - q[6])
         return [np.cos(e[2]), np.sin(e[2]), kappa + c * e[3], F[0] * np.sin(e[2]) - F[1] * np.cos(e[2])]
 
-    return solve_ivp(slope, q[6:8], q[:4], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    return end_of(slope, q[6:8], q[:4], rtol=1e-13, atol=1e-14)
 
 
 def solved(law, q, nodes=24):

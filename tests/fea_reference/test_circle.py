@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from cprbm_scene import Ending, Profile, Scene, Stage
@@ -13,6 +12,7 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
 from tests.cprbm import test_circle as cprbm_circle
+from tests.references.integrated import end_of
 
 T, WIDTH = 0.01, 0.05
 YOUNG = 12 / (WIDTH * T**3)  # so that EI = 1
@@ -34,7 +34,7 @@ def wrapped(force, radius, direction=np.pi / 2):
         def slope(_, v):
             return [v[1], -force * np.sin(direction - v[0]), np.cos(v[0]), -np.sin(v[0])]
 
-        return solve_ivp(slope, (0, 1 - c), [c / radius, 1 / radius, 0, 0], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+        return end_of(slope, (0, 1 - c), [c / radius, 1 / radius, 0, 0], rtol=1e-13, atol=1e-14)
 
     # From the longest wrap, which an endless beam would have, down to the first that leaves the tip no moment.
     longest = radius * (direction - np.arccos(1 - 1 / (2 * force * radius**2)))

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from cprbm_scene import Ending
@@ -15,6 +14,7 @@ from fea_reference.state import State
 from fea_reference.touch import Penalty
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.fea_reference.test_circle import wrapped
+from tests.references.integrated import end_of
 
 HALF_PLANE = {"kind": "beam-half-plane", "point": (0.0, 0.0), "normal": (0.0, 2.0)}
 ROOF = {"kind": "beam-line", "points": ((0.2, -0.1), (0.4, 0.0), (0.55, -0.001), (0.8, -0.2)), "side": "left"}
@@ -91,7 +91,7 @@ def peeled(drop, kappa):
             theta, bent = v[:2]
             return [bent, force * np.cos(theta), np.cos(theta), np.sin(theta), 0.5 * (bent - kappa) ** 2]
 
-        return solve_ivp(slope, (0, length), np.zeros(5), "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+        return end_of(slope, (0, length), np.zeros(5), rtol=1e-13, atol=1e-14)
 
     def unflat(force):
         return brentq(lambda length: free(force, length)[1] - kappa, 1e-6, 1.3 * kappa / force, xtol=1e-15)
@@ -273,8 +273,8 @@ def over_a_corner(force, a, b):
         s, N, M, theta = guess
         push = N * np.array([-np.sin(theta), np.cos(theta)])
         after = np.array([0.0, -force])
-        before = solve_ivp(slope(after + push), (0, s), [0, M, 0, 0], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
-        return before, solve_ivp(slope(after), (s, 1), before, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        before = end_of(slope(after + push), (0, s), [0, M, 0, 0])
+        return before, end_of(slope(after), (s, 1), before)
 
     def missed(guess):
         at, tip = marched(guess)
@@ -336,7 +336,7 @@ def test_a_tip_presses_on_a_floor(thick, moving):
             def slope(_, v):
                 return [v[1], -force * np.cos(v[0]), np.sin(v[0]), 0.5 * v[1] ** 2]
 
-            return solve_ivp(slope, (0, 1), [-SLOPE, bent, 0, 0], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+            return end_of(slope, (0, 1), [-SLOPE, bent, 0, 0])
 
         return free(brentq(lambda bent: free(bent)[1], 0.0, 2.0 * force, xtol=1e-14))
 

@@ -18,11 +18,11 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from cprbm_scene import Ending
 from tests.fea_reference.test_faces import KAPPA, on_its_pin, peeled
+from tests.references.integrated import end_of
 
 STOUT = 0.07
 QUANTITIES = ("scene.potential_energy", "link.reaction_moment", "edge.moment", "edge.force")
@@ -44,7 +44,7 @@ def free(force, length, theta, moment, thickness):
         x, y = (1.0 + N / EA) * cos - Q / GA * sin, (1.0 + N / EA) * sin + Q / GA * cos
         return [x, y, KAPPA + M, force * x, 0.5 * (M**2 + Q**2 / GA + N**2 / EA)]
 
-    return solve_ivp(slope, (0.0, length), [0, 0, theta, moment, 0], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    return end_of(slope, (0.0, length), [0, 0, theta, moment, 0], rtol=1e-13, atol=1e-14)
 
 
 def height(drop):

