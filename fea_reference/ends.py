@@ -35,7 +35,8 @@ from fea_reference.system import System
 from fea_reference.touch import Circle, Face, Touch
 
 _AT_END = 1e-6  # elements
-_NOTHING = 1e-9  # times the resultant
+# times the resultant: overlaps are 1e-6 of a thickness, and round-off of positions is 1e-13
+_NOTHING = 1e-6
 _READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e: places of χ
 
 

@@ -1,13 +1,14 @@
 """Where a zone of contact ends, against the closed form of the wrapped beam."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 
-from cprbm_scene import Ending, scene_from
+from cprbm_scene import Ending, read, scene_from
 from fea_reference import Settings, answer
 from tests.fea_reference.test_circle import on_circle
 from tests.references.wrapped import Wrapped
@@ -46,6 +47,15 @@ def test_a_circle_that_props_in_a_point_has_both_ends_there(kinematics):
     (found,) = ends(on_circle((1e-3,), center=(0.4, -0.01 - T / 2), circle=0.01), kinematics=kinematics)
     assert found == pytest.approx([0.4, 0.4], abs=1.0 / 80)
     assert found[0] == found[1]
+
+
+def test_a_place_that_touches_by_round_off_is_no_end():
+    # both beams begin side by side: penalties of 80 elements pressed there with 1e-8 of the force in the middle
+    scene = read(Path(__file__).parents[2] / "comparisons" / "cases" / "prestressed.toml")
+    first = scene.stages[0].model_copy(update={"stations": scene.stages[0].stations[:3]})
+    got = answer(scene.model_copy(update={"stages": (first,)}), Settings(elements=80, kinematics="bending"))
+    found = [station.values["contact.ends"] for station in got.stations]
+    assert [ends.tolist() for ends in found] == [pytest.approx([0.0235, 0.0235], rel=1e-3)] * 3
 
 
 def test_an_open_contact_has_no_ends():
