@@ -209,10 +209,9 @@ class Contacts:
     given_up: frozenset[tuple[int, int]] = frozenset()
     kept_open: frozenset[int] = frozenset()
 
-    @property
-    def stay_open(self) -> Flags:
-        """Places of the pairs ``kept_open``."""
-        return np.asarray((self.places.pair[:, None] == np.array(sorted(self.kept_open), dtype=np.int64)).any(axis=1))
+    def of_pairs(self, pairs: frozenset[int]) -> Flags:
+        """Places of some pairs."""
+        return np.asarray((self.places.pair[:, None] == np.array(sorted(pairs), dtype=np.int64)).any(axis=1))
 
     def pressing(self, pair: int) -> Flags:
         """Closed places of a pair."""

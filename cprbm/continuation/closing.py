@@ -202,7 +202,7 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
 def kept_open(state: State, pairs: frozenset[int]) -> State:
     """The state with open pairs, which stay open in an equilibrium."""
     contacts = state.contacts
-    kept = ~(np.isin(contacts.places.pair, list(pairs)) & (contacts.closed | contacts.places.moves))
+    kept = ~(contacts.of_pairs(pairs) & (contacts.closed | contacts.places.moves))
     remaining = replace(contacts, places=taken(contacts.places, kept), closed=contacts.closed[kept], kept_open=pairs)
     return replace(state, contacts=remaining)
 

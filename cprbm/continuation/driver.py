@@ -185,7 +185,7 @@ class Driver:
                 except ContactClosesError as overlap:
                     closing |= apart_pairs(self.solved, overlap.overlapping)
                     awaited -= overlap.met
-                    # pairs that overlap keep the sides that they have at the begin
+                    # overlapping pairs keep the sides of the begin
                     start = replace(
                         start, contacts=with_fixed_places(self.system.geometry, start.z, start.contacts, turning=True)
                     )

@@ -99,7 +99,7 @@ def touched_equilibrium(
             if new is None:
                 return solved
             revised = new
-        closing = revised.places.pair[revised.closed & np.isin(revised.places.pair, list(awaited))]
+        closing = revised.places.pair[revised.closed & revised.of_pairs(awaited)]
         if len(closing):
             raise ContactClosesError(closing, closing)
         if number < RETRIES and not joints_tried:
@@ -226,7 +226,9 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
     overlap, span = -OVERLAP - beside_points(curves, places, closed)[1], curves.span[places.piece]
     replaced = np.zeros(len(closed), dtype=bool)
     created = taken(places, replaced)
-    for i in np.flatnonzero(closed[heavier] | ((gaps < overlap[heavier]) & ~contacts.stay_open[heavier])).tolist():
+    for i in np.flatnonzero(
+        closed[heavier] | ((gaps < overlap[heavier]) & ~contacts.of_pairs(contacts.kept_open)[heavier])
+    ).tolist():
         best = heavier[i]
         # the joints of a run are neighbours
         if any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in runs[i]):

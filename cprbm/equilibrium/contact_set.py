@@ -131,7 +131,7 @@ def with_fixed_places(geometry: Geometry, z: Array, contacts: Contacts, *, turni
         contacts.corner_sides,
         contacts.places,
         contacts.closed,
-        contacts.stay_open | (not turning),
+        contacts.of_pairs(contacts.kept_open) | (not turning),
         contacts.counters,
     )
     # a joint that shared a force may have been replaced by a point of contact
@@ -182,10 +182,10 @@ def solve_set(
     m, curves = system.numbers, geometry.arrays
     places, closed = copied(contacts.places), contacts.closed.copy()
     # the fixed places of pairs that stay open wait for the end of the iterations
-    passive = np.where(contacts.stay_open & ~places.moves, np.inf, 0.0)
+    passive = np.where(contacts.of_pairs(contacts.kept_open) & ~places.moves, np.inf, 0.0)
     gaps, curvatures, room = np.full(len(closed), np.inf), np.empty(len(closed)), passive.copy()
     linear = z, m, driven, start.target, *pulls(system, springs)
-    waits, met = contacts.stay_open | np.isin(places.pair, list(awaited)), np.zeros(len(closed), dtype=bool)
+    waits, met = contacts.of_pairs(contacts.kept_open | awaited), np.zeros(len(closed), dtype=bool)
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters, geometry.sites.columns, waits
     settle_near(z, *settling[:7], FINDING)
     seen: dict[bytes, int] = {}

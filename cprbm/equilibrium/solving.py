@@ -62,7 +62,7 @@ class Solved:
     def gaps(self) -> Array:
         """Gaps of all places of contact; inf for pairs kept open."""
         gaps = self.state.contacts.gaps(self.system.geometry, self.state.z)
-        return np.where(self.state.contacts.stay_open, np.inf, gaps)
+        return np.where(self.state.contacts.of_pairs(self.state.contacts.kept_open), np.inf, gaps)
 
     def response(self, load: Array) -> Array:
         """Change (size,) of the unknowns under a ``load`` (size,), the closed places kept closed."""
