@@ -258,13 +258,10 @@ def _branch(march: March, load: int, span: float) -> Branch:
     return Branch(march.model, march.settings, dict(march.penalties), march.acting, march.values.copy(), load, span)
 
 
-def _cosine(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:
-    return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
-
-
 def _same_branch(branch: Branch, here: BranchPoint, there: BranchPoint, length: float) -> bool:
     """True if both points are on the same branch, a ``length`` of arc apart."""
-    return _cosine(branch, here, there) >= _STRAIGHT and _distance(branch, here, there) <= _LONGER * length
+    cosine = float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
+    return cosine >= _STRAIGHT and _distance(branch, here, there) <= _LONGER * length
 
 
 def _distance(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:

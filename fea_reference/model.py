@@ -17,6 +17,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 
 from cprbm_scene.answer import Array
 from cprbm_scene.clearance import is_apart
+from cprbm_scene.frozendict import frozendict
 from cprbm_scene.solving import refuse
 from cprbm_scene.statement import (
     Beam,
@@ -45,7 +46,7 @@ from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
-from fea_reference.stops import StopPart, stops_of
+from fea_reference.stops import ROUNDED, StopPart, stops_of
 from fea_reference.upright import shear_layers
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # Gauss points per element: the neutral line is a cubic there
@@ -273,8 +274,15 @@ class Model:
 
     @property
     def initial_constraints(self) -> Acting:
-        """Active constraints before the assembly."""
-        return Acting(None if self.apart else np.zeros((0, 2)), stopping=not self.apart)
+        """Active constraints before the assembly: a stop at its limit as drawn is closed, and opens in tension.
+
+        At an own pin the contact beside the pin decides about the stop.
+        """
+        if self.apart:
+            return Acting(None, stopping=False)
+        margins = {stop.name: stop.margin(self.start) for stop in self.stops if not stop.owner}
+        limits = {name: limit for name, (margin, limit) in margins.items() if abs(margin) < ROUNDED}
+        return Acting(np.zeros((0, 2)), stopping=True, limits=frozendict(limits))
 
     def free(self, joint: JointPart, acting: Acting) -> bool:
         """True if the joint is inactive because its end is not assembled yet."""

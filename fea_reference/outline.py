@@ -31,6 +31,7 @@ from cprbm_scene.statement import EdgeContact, FunctionContact, HalfPlaneContact
 from fea_reference.state import Complex, multiplied, summed
 
 _SAME = 1e-6  # m: accepted distance of coinciding points of a scene
+_STRAIGHT = 1e-9  # sine of a turn: round-off of coordinates
 _SAMPLES = 257  # points of a graph for the initial guess of the closest point
 _PIECES = 64  # pieces of a graph for the crossing check
 _NEWTON_STEPS = 30
@@ -62,10 +63,16 @@ class Corners:
         return np.asarray(both / np.hypot(both[0], both[1]))
 
     @property
+    def turn(self) -> Array:
+        """Sines (c,) of the turns, negative at convex corners, zero where two pieces go on straight."""
+        a, b = self.tangents
+        sine = a[0] * b[1] - a[1] * b[0]
+        return np.where(np.abs(sine) < _STRAIGHT, 0.0, sine)
+
+    @property
     def convex(self) -> NDArray[np.bool_]:
         """True (c,) for convex corners."""
-        a, b = self.tangents
-        return np.asarray(a[0] * b[1] - a[1] * b[0] < 0.0)
+        return np.asarray(self.turn < 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -379,21 +386,12 @@ class Graph:
     def _f(self, v: Array) -> tuple[Array, Array, Array]:
         """f and its first two derivatives at ``v`` (k,), (k,) all, by Horner's scheme."""
         f = slope = half = np.zeros_like(v)
-        u = v - self._middle
-        for coefficient in self._descending_coefficients:
+        u = v - 0.5 * (self.span[0] + self.span[1])
+        for coefficient in self.f.coef[::-1].tolist():
             half = half * u + slope
             slope = slope * u + f
             f = f * u + coefficient
         return f, slope, 2.0 * half
-
-    @property
-    def _middle(self) -> float:
-        return 0.5 * (self.span[0] + self.span[1])
-
-    @cached_property
-    def _descending_coefficients(self) -> list[float]:
-        """Coefficients of f, the highest first."""
-        return [float(coefficient) for coefficient in self.f.coef[::-1]]
 
     @property
     def _forwards(self) -> bool:

@@ -7,9 +7,8 @@ from cprbm_scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 from fea_reference.ends import ends
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
-from fea_reference.model import Model
 from fea_reference.recovery import bending_moment, normal_force
-from fea_reference.stops import StopPart, acting_stops
+from fea_reference.stops import acting_stops
 from fea_reference.supports import ground_reaction, joint_reaction, row_reaction
 from fea_reference.touch import Pair, Touch
 
@@ -49,7 +48,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             closed = _touch(march, probe.of) is not None or _ends_held_by_moment(march, probe.of)
             return frozen_array(march.closing[probe.of] if closed else [])
         case "angle":
-            return frozen_array(_stop(model, probe.of).angle(z))
+            return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).angle(z))
         case "moment":
             return frozen_array(abs(_moment(march, probe.of)) * units.moment)
         case "force":
@@ -94,10 +93,6 @@ def touching(march: March) -> dict[str, Array]:
             middle = 0.5 * (contact.x + contact.x_m + to_surfaces * contact.normal)
             places[contact.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
     return places
-
-
-def _stop(model: Model, name: str) -> StopPart:
-    return next(stop for stop in model.stops if stop.name == name)
 
 
 def _moment(march: March, name: str) -> float:

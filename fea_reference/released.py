@@ -45,7 +45,8 @@ def releases_energy(
     h = float(ends[1][1][load] - ends[0][1][load])
     energies = [penalised_energy(model, system, values) for system, values, _ in ends]
     forces = [_force(model, load, system, values, h) for system, values, _ in ends]
-    bends = [_bend(model, load, system, rate, acting) for system, _, rate in ends]
+    # F′ from the path tangent
+    bends = [-float(load_direction(model, load, system.z, acting) @ rate) for system, _, rate in ends]
     size = max(map(abs, energies)) + abs(h) * max(map(abs, forces))
     if size < _NOTHING:
         return False
@@ -70,8 +71,3 @@ def _force(model: Model, load: int, system: System, values: Array, h: float) -> 
     raised[load] += h
     lowered[load] -= h
     return (potential_energy(model, system, raised) - potential_energy(model, system, lowered)) / (2.0 * h)
-
-
-def _bend(model: Model, load: int, system: System, rate: Array, acting: Acting) -> float:
-    """F′ from the path tangent."""
-    return -float(load_direction(model, load, system.z, acting) @ rate)

@@ -25,7 +25,8 @@ from fea_reference.acting import Acting
 from fea_reference.hermite import Index
 from fea_reference.state import State
 
-_ROUNDED = 1e-9  # rad: tolerance for a reference angle of π
+ROUNDED = 1e-9
+"""Tolerance (rad) for a reference angle of π, and for a limit at the reference angle: round-off of coordinates."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +99,7 @@ def stops_of(
         line: Array = np.array(scene.place_of(stop.towards)) - np.array(scene.place_of(end.point))
         along = drawn if stop.end == "start" else drawn + np.pi  # out of the pin into the beam
         angle = float(np.remainder(along - np.arctan2(line[1], line[0]), 2.0 * np.pi))
-        angle -= 2.0 * np.pi if angle > np.pi + _ROUNDED else 0.0
+        angle -= 2.0 * np.pi if angle > np.pi + ROUNDED else 0.0
         number, dofs = bodies[scene.body_of(end.point)]
         phi = None if dofs is None else int(dofs[2])
         ends_of = (stop.beam, stop.end)

@@ -12,10 +12,9 @@ sides meet.  Where a side comes to the edge from behind instead, the side ends, 
 solid lies between the edge and the side.
 
 At a convex corner the boundary turns away from the beam.  The corner is a place of contact: a point of the boundary
-before the beam's curve.  The boundary cannot pass the beam between two joints there.  A row of corners with less than h
-between them is an edge with the corners' mean curvature; only where the row turns by more than a radian over h the
-corners are places.  A circle smaller than a link is a corner too.  A bend of a smooth edge with a radius below a link
-is a curve of its own, on which a point of contact moves.
+before the beam's curve.  The boundary cannot pass the beam between two joints there.  In a fine polyline several
+corners within a link are places.  A circle smaller than a link is a corner too.  A bend of a smooth edge with a radius
+below a link is a curve of its own, on which a point of contact moves.
 """
 
 from dataclasses import replace
@@ -29,9 +28,6 @@ from cprbm_scene.answer import Array, Ints
 
 KINK = 1e-6
 """Least turn of a corner, rad: borders of a smooth edge's pieces turn by round-off."""
-
-SHARPEST_ROW = 1.0
-"""Turn of a row of corners within a link, rad, from which the corners are places: a radius of a link."""
 
 BEHIND = 1e-9
 """Distance from an edge's end, over the longest beam, up to which a side does not meet the edge: round-off."""
@@ -92,12 +88,7 @@ def sharp_corners(curve: Curve, side: int, link: float) -> list[int]:
     a, b = np.roll(slopes[:, 1] + 2.0 * slopes[:, 2] + 3.0 * slopes[:, 3], 1), slopes[:, 1]
     turns = -side * np.angle(b * np.conj(a))
     turns[0] = turns[0] if curve.closed else 0.0
-    spans, corners = np.diff(curve.arcs), np.flatnonzero(turns > KINK)
-    apart = np.abs(curve.arcs[corners, None] - curve.arcs[corners])
-    apart = np.minimum(apart, curve.arcs[-1] - apart) if curve.closed else apart
-    turn_around = np.where(apart < 0.5 * link, turns[corners], 0.0).sum(axis=1)
-    far = np.maximum(spans[corners], spans[corners - 1]) >= link
-    return [int(piece) for piece in corners[far | (turn_around > SHARPEST_ROW)]]
+    return [int(piece) for piece in np.flatnonzero(turns > KINK)]
 
 
 def sharp_bends(curve: Curve, side: int, link: float) -> list[Ints]:

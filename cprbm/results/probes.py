@@ -8,8 +8,9 @@ e        arc length of the zone's end
 =======  ====================================================================================
 
 Forces act at joints: the outermost force gives e to about one link.  Beyond that force the moment is smooth:
-g″ is zero at e and grows evenly.  Second differences of g at the next joints, extrapolated to zero, give e.  The spline
-spreads a force over one joint on either side; such joints do not count.  A moving place at the end of a zone is e.
+g″ is zero at e.  A parabola through three second differences of g at the next joints has the zero e: under a weight the
+moment is a parabola.  The spline spreads a force over one joint on either side; such joints do not count.  A moving
+place at the end of a zone is e.
 
 Clamp and contact share the force of a zone beside a weld, and a moment at an own pin is part of the contact: such a
 zone begins at the beam's end.
@@ -20,6 +21,7 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from cprbm.chain import END, ends_of, stop_angle
@@ -192,7 +194,7 @@ def _zone_end(view: View, geometry: Geometry, pair: int, outermost: float, *, se
     parting, at = np.diff(slopes) / (0.5 * (s[2:] - s[:-2])), (s[2:] + s[1:-1] + s[:-2]) / 3.0
     if not np.all(np.diff(parting, prepend=0.0) > 0.0):
         return outermost
-    # s as a polynomial of g″, at zero (Lagrange)
-    weights = [np.prod([other / (other - own) for other in np.delete(parting, i)]) for i, own in enumerate(parting)]
-    end = float(np.dot(weights, at))
+    # the zero of the parabola through g″ that is nearest to the outermost force
+    zeros = Polynomial.fit(at, parting, 2).roots()
+    end = min(zeros[zeros.imag == 0.0].real.tolist(), key=lambda zero: abs(zero - outermost), default=np.inf)
     return end if abs(end - outermost) <= FARTHEST * span else outermost

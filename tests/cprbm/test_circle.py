@@ -364,7 +364,7 @@ def test_in_the_papers_form_shape_and_energy_converge_and_forces_beside_the_clam
     # it over a length a with EI h²/8R ~ p a⁴ at the pressure p, so a ~ √h; the clamp carries what lies there: p a of
     # the force and p a²/2 of the moment.
     errors = []
-    for links in (57, 160):
+    for links in (57, 180):
         answer = cprbm.answer(scene_of([truth.force]), cprbm.Settings(links=links, formulation="paper"))
         assert answer.completed, answer.sentence
         values = answer.stations[-1].values
@@ -380,9 +380,9 @@ def test_in_the_papers_form_shape_and_energy_converge_and_forces_beside_the_clam
         )
     coarse, fine = np.array(errors)
     assert fine[:4] == pytest.approx(np.zeros(4), abs=2e-5)
-    assert np.max(fine[:4] / coarse[:4]) < 2.0 * (57 / 160) ** 2
-    assert fine[4] / coarse[4] < 1.2 * 57 / 160
-    assert fine[5] / coarse[5] < 1.1 * (57 / 160) ** 0.5
+    assert np.max(fine[:4] / coarse[:4]) < 2.0 * (57 / 180) ** 2
+    assert fine[4] / coarse[4] < 1.2 * 57 / 180
+    assert fine[5] / coarse[5] < 1.1 * (57 / 180) ** 0.5
 
 
 def test_in_the_papers_form_a_circle_moves_with_its_body():

@@ -44,6 +44,22 @@ def test_the_errors_fall_with_the_fourth_power_of_the_number_of_links(thick):
         assert np.all(errors_of(solved(scene, n), exact) < np.maximum(0.2 / n**4, 3e-9))
 
 
+def polyline_around(at, slope):
+    """A round edge of straight pieces, three in a link of 40; the ``slope`` lies between both pieces beside ``at``."""
+    angles = slope - 0.06 * (np.arange(16) - 7.5)
+    pieces = 0.008 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    points = np.concatenate([np.zeros((1, 2)), np.cumsum(pieces, axis=0)])
+    return tuple(map(tuple, np.array(at) + points - points[8]))
+
+
+@pytest.mark.parametrize("links", [20, 40, 41])
+def test_a_beam_touches_a_fine_polyline_at_a_corner(links):
+    exact = Cornered(FORCE, AT, 0.5 * T)
+    points = polyline_around(AT, exact.leaning)
+    scene = cantilever_over({"kind": "beam-line", "points": points, "side": "left", "thick": True}, force=FORCE)
+    assert np.all(errors_of(solved(scene, links), exact) < 0.2 / links**4)
+
+
 @pytest.mark.parametrize("points", [SHELF, SHARP, CLOSED, ROOF[::-1]])
 def test_a_corner_is_the_same_whatever_lies_behind_it(points):
     side = "right" if points == ROOF[::-1] else "left"

@@ -184,3 +184,52 @@ def test_no_load_falls_between_a_point_and_a_length(load):
         n = links if isinstance(links, int) else min(links.values())
         assert station.values["c.force"][0] == pytest.approx(fine, rel=0.6 / n)
         assert station.certificate.penetration < 0.02
+
+
+@pytest.mark.parametrize("links", [40, 80])
+def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
+    # reference: a length a is free, with the deflection h = q a⁴/24 EI and the force q a/2 at the end (small slopes)
+    length, thickness, width, q, heights = 1.0, 0.5e-3, 0.02, 0.77, np.array([2e-3, 10e-3])
+    scene = scene_from(
+        {
+            "name": "lifted",
+            "theory": "bending",
+            "materials": {"m": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+            "bodies": {
+                "floor": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
+                "tip": {"motion": "free", "points": {"T": [length, 0.0]}},
+            },
+            "beams": {
+                "strip": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [length, 0.0]},
+                    "thickness": thickness,
+                    "width": width,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "weld", "point": "T"},
+                }
+            },
+            "loads": {"q": {"kind": "distributed", "beam": "strip", "direction": [0.0, -1.0]}},
+            "drives": {"h": {"kind": "displacement", "point": "T", "direction": [0.0, 1.0]}},
+            "contacts": {
+                "c": {
+                    "kind": "beam-half-plane",
+                    "beam": "strip",
+                    "body": "floor",
+                    "point": [0.0, -0.5 * thickness],
+                    "normal": [0.0, 1.0],
+                }
+            },
+            "stages": [
+                {"name": "lie", "steps": "q", "stations": [q]},
+                {"name": "lift", "steps": "h", "stations": heights.tolist()},
+            ],
+            "probes": [{"of": "c", "quantity": "ends"}, {"of": "T", "quantity": "reaction"}],
+        }
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    free = (24.0 * 2e11 * width * thickness**3 / 12.0 * heights / q) ** 0.25
+    lifted = [station.values for station in answer.stations[1:]]
+    assert [values["c.ends"][1] for values in lifted] == pytest.approx(length - free, abs=0.05 * length / links)
+    assert [values["T.reaction"][1] for values in lifted] == pytest.approx(0.5 * q * free, rel=1e-3)

@@ -414,3 +414,27 @@ def test_what_slides_over_a_tip_that_it_has_sunk_onto_goes_through_nothing():
     assert not moved(0.5, 1e-4, (3e-4, -3e-4))
     assert not moved(0.5, 1e-4, (-0.11, 0.13))  # some elements farther
     assert moved(1.1, 0.05, (0.0, 0.4))
+
+
+def test_a_strip_that_buckles_against_a_wall_does_not_feel_joints_of_the_wall():
+    """Reference: the wall in one piece."""
+    forces = []
+    for inner in ((), ((0.3, 0.03), (0.61, 0.03))):
+        scene = scene_of(
+            {"kind": "spline", "points": ((0.0, 0.0), (0.25, 1e-3), (0.5, 2e-3), (0.75, 1e-3), (1.0, 0.0))},
+            {"joint": "weld", "point": "root"},
+            {"joint": "weld", "point": "tip"},
+            {"kind": "beam-line", "body": "ground", "points": ((-1.0, 0.03), *inner, (2.0, 0.03)), "side": "right"},
+            bodies={
+                "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+                "slider": {"motion": "slides", "points": {"tip": (1.0, 0.0)}, "along": (1.0, 0.0)},
+            },
+            drives={"v": {"kind": "displacement", "point": "tip", "direction": (-1.0, 0.0)}},
+            stages=(("v", (3e-3,)),),
+            probes=(("edge", "force"), ("tip", "reaction")),
+        )
+        solved = answer(scene, Settings(elements=12))
+        assert solved.completed, solved.sentence
+        forces.append(solved.stations[-1].values["edge.force"])
+    assert forces[0] > 0.0
+    assert forces[1] == pytest.approx(forces[0], rel=1e-9)
