@@ -401,7 +401,7 @@ class _View:
         every, crosses = self._crossing(np.concatenate([P] * 3, axis=1), t, np.concatenate([start] * 3))
         zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance
-        jumps = through & (corners.turn[near] * d > 0.0)
+        jumps = np.logical_and(through, corners.turn[near] * d > 0.0)
         return every[crosses], dict(zip(zeta[jumps].tolist(), near[jumps], strict=True))
 
     def _crossing(self, P: Array, t: Array, start: Array) -> tuple[Array, Array]:
