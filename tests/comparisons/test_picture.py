@@ -212,7 +212,7 @@ def test_a_curve_needs_two_stations_and_may_go_back(hinge, right):
 def test_a_contact_in_a_point_is_shown_on_a_part_of_its_beam(solved, monkeypatch):
     """The finite elements press over 1e-4 of a beam: the figure shows a twentieth, and no wide zone."""
     scene, answer, _ = solved
-    monkeypatch.setattr(curves, "panels_figure", lambda name, caption, abscissa, panels, **_: panels)
+    monkeypatch.setattr(curves, "chart", lambda name, caption, abscissa, panels, **_: panels)
     where = SimpleNamespace(where=(answer.stations[-1].stage, answer.stations[-1].value))
     compared = SimpleNamespace(scene=scene, rows=[where], runs=SimpleNamespace(pair=(answer, answer)))
     (panels,) = curves.contact_figures(compared)
