@@ -8,6 +8,8 @@ and the size before, in the logarithms of error and time; without a size before,
 import math
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from comparisons.bench.measures import MEASURES, Measure, uncertainties
 from comparisons.bench.running import FIT_FROM, NO_WORSE, OURS, Clocked, Contender, Session, Timing, trend
 from comparisons.choices import Count
@@ -145,7 +147,7 @@ def ending_of(timing: Timing) -> str:
 
 
 def _note(measured: Session) -> str:
-    extent = "the whole scene" if measured.plan.whole else "the last load, from the state without stress"
+    extent = "the whole scene" if measured.whole else "the last load, from the state without stress"
     off = {measure: percent(u) for measure, u in uncertainties(measured.scene, measured.reference).items() if u > 0.0}
     known = f"; itself known to {', '.join(f'{u} ({measure})' for measure, u in off.items())}" if off else ""
     peers = (
@@ -155,7 +157,7 @@ def _note(measured: Session) -> str:
         else ""
     )
     return (
-        f"Seconds{_OF_CLOCK[measured.plan.clock]} for {extent}: medians of the set-up and of the solve, and the "
+        f"Seconds{_OF_CLOCK[measured.clock]} for {extent}: medians of the set-up and of the solve, and the "
         "distance of the solve's quartiles. N: links or elements per beam. Errors: the largest of displacements and "
         "rotations (places), of contacts' and drives' forces (forces), against "
         f"{measured.reference.by}{known}.{peers}"
@@ -233,16 +235,16 @@ def _omissions(measured: Session) -> Table:
 
 def document(measured: Session) -> Plain:
     """``bench``: rows, fastest methods, ratios, trends; times in seconds, errors as fractions."""
-    plan, reference = measured.plan, measured.reference
+    reference = measured.reference
     # the project's own methods first, then peers by their names
     left_out = sorted(measured.omissions(), key=lambda one: (OURS.index(one[0]) if one[0] in OURS else 9, one[0]))
     return {
         "case": measured.scene.name,
         "machine": plain(measured.machine),
-        "repeat": plan.repeat,
-        "kinematics": plan.kinematics,
-        "clock": plan.clock,
-        "stations": "all" if plan.whole else "last",
+        "repeat": measured.repeat,
+        "kinematics": measured.kinematics,
+        "clock": measured.clock,
+        "stations": "all" if measured.whole else "last",
         "tolerance": _tolerance(measured),
         "reference": {"by": reference.by, "uncertainty": plain(uncertainties(measured.scene, reference))},
         "rows": records_of(_KEYS, measured.rows()),
@@ -285,11 +287,11 @@ def seconds_at(points: Sequence[tuple[float, float]], target: float) -> float | 
     first = max((place + 1 for place, (error, _) in enumerate(points) if error > target), default=0)
     if first == len(points):
         return None
-    (error, seconds), (before, quick) = points[first], points[max(first - 1, 0)]
-    if first == 0 or min(error, seconds, quick) <= 0.0:
-        return seconds
-    share = math.log(before / target) / math.log(before / error)
-    return math.exp(math.log(quick) + share * math.log(seconds / quick))
+    around = points[max(first - 1, 0) : first + 1]
+    if len(around) == 1 or min(map(min, around)) <= 0.0:
+        return points[first][1]
+    errors, seconds = np.log(around[::-1]).T
+    return float(np.exp(np.interp(math.log(target), errors, seconds)))
 
 
 def ratios(measured: Session) -> list[Plain]:
@@ -299,14 +301,13 @@ def ratios(measured: Session) -> list[Plain]:
     """
     found = []
     for ours in (row for row in measured.rows("paper") if row.counts):
-        rows = {row.contender.name: row for row in measured.rows() if row.count == ours.count and row.counts}
-        record: Plain = {"n": plain(ours.count), **dict.fromkeys(_UNTIMED)}
-        for method in measured.methods():
-            for clocked in method.ratios:
-                mine, theirs = ours.median(clocked), rows.get(method.name)
-                record[_ratio_key(method.name, clocked)] = theirs.median(clocked) / mine if theirs and mine else None
-        if rows.keys() - {"paper", "fea"}:
-            found.append({**record, "iterations_per_station": ours.iterations_per_station})
+        rows = {row.contender: row for row in measured.rows() if row.count == ours.count and row.counts}
+        times: Plain = dict.fromkeys(_UNTIMED) | {
+            _ratio_key(method.name, clocked): rows[method].median(clocked) / mine if method in rows and mine else None
+            for method in measured.methods() for clocked in method.ratios for mine in (ours.median(clocked),)
+        }  # fmt: skip
+        if any(method.ratios for method in rows):
+            found.append({"n": plain(ours.count), **times, "iterations_per_station": ours.iterations_per_station})
     return found
 
 

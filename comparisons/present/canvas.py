@@ -270,7 +270,8 @@ def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str) -> None:
 
 def _logarithmic(axes: Axes, x: Sequence[float]) -> None:
     """Give axes logarithmic scales with a grid, and ticks at the numbers ``x``; otherwise an axis has whole decades."""
-    axes.set(xscale="log", yscale="log", ylim=_whole(axes.get_ylim()))
+    axes.set(xscale="log", yscale="log")
+    axes.set_ylim(_whole(axes.get_ylim()))
     if x:
         axes.set_xticks(x, [f"{each:g}" for each in x])
     else:

@@ -17,7 +17,7 @@ from pydantic_core import to_json
 
 from comparisons import cases, provenance
 from comparisons.bench.measures import benchmark_scene, reference
-from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
+from comparisons.bench.running import Session, contenders, refusal_text
 from comparisons.bench.section import bench_section, pictures
 from comparisons.choices import Choices
 from comparisons.offset_verdict import Compared
@@ -202,9 +202,10 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
         SceneError: every method refuses the question.
     """
     scene = benchmark_scene(scene)
-    plan = Plan(dict.fromkeys(OURS, SIZES), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
-    methods, known = contenders(timed, Choices(kinematics=plan.kinematics)), reference(scene, knowing)
-    measured = Session(scene, plan, methods, provenance.machine(), known).after_all()
+    sizes = dict.fromkeys(contenders(timed, Choices(kinematics="bending")), SIZES)
+    known = reference(scene, knowing)
+    session = Session(scene, provenance.machine(), sizes, known, repeat=REPEAT, at_most=AT_MOST, clock="cpu")
+    measured = session.after_all()
     return replace(bench_section(measured), figures=pictures(measured))
 
 
