@@ -22,9 +22,9 @@ from comparisons.cli import output
 from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import code_of
 from comparisons.cli.main import OPTIMISERS
-from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
 from comparisons.present.columns import Figure, Plain, Section
+from comparisons.present.offset import Compared, compared_offset
 from comparisons.store import Run, run_into
 from comparisons.studies import calibration, convergence, table1
 from comparisons.studies.report import Report

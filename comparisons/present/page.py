@@ -16,12 +16,12 @@ from urllib.parse import quote
 from comparisons.answer_file import packed
 from comparisons.case import Comparison
 from comparisons.formats import percent
-from comparisons.offset_verdict import Compared, OffsetComparison
 from comparisons.present import json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
 from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
+from comparisons.present.offset import Compared, OffsetComparison
 from comparisons.present.stepper import HEADERS, SHADES, stations_json, stepper
 from comparisons.present.table import STYLES, html_cells
 from comparisons.writing import text_of, write

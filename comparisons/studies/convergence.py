@@ -14,10 +14,10 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
-from comparisons.offset_verdict import OffsetRow, compared_offset
 from comparisons.pairing import OffsetConstruction, Solvers
 from comparisons.present.canvas import GREY, LINES, Line, Panel, chart
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
+from comparisons.present.offset import OffsetRow, compared_offset
 from comparisons.sentences import problem_sentences
 from comparisons.stations import at_shown, last_station
 from comparisons.store import AnswerMemory

@@ -20,9 +20,9 @@ from comparisons.bench.measures import benchmark_scene, reference
 from comparisons.bench.running import Session, contenders, refusal_text
 from comparisons.bench.section import bench_section, pictures
 from comparisons.choices import Choices
-from comparisons.offset_verdict import Compared
 from comparisons.pairing import Solvers
 from comparisons.present.columns import Plain, Section
+from comparisons.present.offset import Compared
 from comparisons.present.page import (
     Chapter,
     figures_of,
