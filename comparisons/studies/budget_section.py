@@ -131,9 +131,8 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
         return ()
     places = np.arange(len(budgets))
     shares = np.array([[_share(each, each.parts[name]) for each in budgets] for name in LOOKS])
-    ends = np.where(
-        shares < 0.0, np.cumsum(np.minimum(shares, 0.0), axis=0), np.cumsum(np.maximum(shares, 0.0), axis=0)
-    )
+    below, above = (np.cumsum(half(shares, 0.0), axis=0) for half in (np.minimum, np.maximum))
+    starts = np.where(shares < 0.0, below, above) - shares
     missed = {place + 0.42: each for place, each in enumerate(budgets) if each.missed is not None}
     caption = (
         f"Parts of the differences at {at_station(account.scene, *last_station(account.scene))}: to the right "
@@ -141,9 +140,9 @@ def budget_figures(account: Account) -> tuple[Figure, ...]:
         "and the number at the right the difference."
     )
     with canvas(9.0, 1.9 + 0.34 * len(budgets)) as (drawing, (axes,)):
-        for (colour, label), own, end in zip(LOOKS.values(), shares, np.where(shares < 0.0, below, above), strict=True):
+        for (colour, label), own, start in zip(LOOKS.values(), shares, starts, strict=True):
             if own.any():
-                axes.barh(places, own, left=end - own, height=0.66, color=colour, label=label)
+                axes.barh(places, own, left=start, height=0.66, color=colour, label=label)
         axes.plot(shares.sum(axis=0), places, "D", color="white", markeredgecolor="black", markersize=5.0, label="sum",
                   clip_on=False, zorder=3.0)  # fmt: skip
         if missed:
