@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
@@ -28,6 +28,10 @@ class Pair(NamedTuple):
         if one is None or two is None or one.value.shape != two.value.shape:
             return None
         return size(one.value - two.value), size(one.uncertainty + two.uncertainty)
+
+
+_Apart = tuple[Pair, float, float]
+"""Families with a limit each, the distance of the limits, and their uncertainties."""
 
 
 def pairs_of(families: Iterable[Family]) -> tuple[Pair, ...]:
@@ -173,29 +177,37 @@ def _share(family: Family, value: float | None) -> str:
 
 
 def _orders(found: Convergence) -> Table:
-    compared, rows = dict[str, list[tuple[Pair, float, float]]](), []
-    for pair in pairs_of(found.families):
-        if pair.apart is not None and pair.cprbm.why != "the contact is open":  # an open contact has no limit
-            compared.setdefault(pair.cprbm.probe, []).append((pair, *pair.apart))
-    for probe in (probe.name for probe in found.scene.probes if probe.name in compared):
-        pairs = [pair for pair, *_ in compared[probe]]
-        (worst, _), distance, stated = max(compared[probe], key=lambda each: each[1] / (each[0].cprbm.scale or 1.0))
-        shares = [far / each.scale for each, _ in pairs if (far := each.apart(found.shown)) is not None]
-        within = sum(apart <= may for _, apart, may in compared[probe])
-        shown = [spread(order for pair in pairs for order in pair[solver].orders) for solver in (0, 1)]
-        where = at_station(found.scene, worst.stage, worst.station or 0.0)
-        sizes = percent(max(shares, default=None)), _share(worst, distance), _share(worst, stated)
-        rows.append((probe, *shown, *sizes, where, f"{within} of {len(pairs)}"))
-    return without_empty(
-        Table(
-            "Orders and limits over all stations",
-            ("probe", "order CPRBM", "order FEA", f"CPRBM at {found.shown} from its limit", "limits apart", "stated",
-             "at", "within"),
-            tuple(rows),
-            "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
-            "a change that is round-off or turns back has no order. Distances at their worst.",
+    # an open contact has no limit
+    pairs = (pair for pair in pairs_of(found.families) if pair.cprbm.why != "the contact is open")
+    known = [(pair, *pair.apart) for pair in pairs if pair.apart is not None]
+    groups = [[each for each in known if each[0].cprbm.probe == probe.name] for probe in found.scene.probes]
+
+    def worst(mine: Sequence[_Apart]) -> _Apart:
+        return max(mine, key=lambda each: each[1] / (each[0].cprbm.scale or 1.0))
+
+    def order(solver: Literal["cprbm", "fea"]) -> Column[Sequence[_Apart]]:
+        return Column(
+            f"order {NAMES[solver]}",
+            lambda mine: spread(each for pair, *_ in mine for each in getattr(pair, solver).orders),
         )
-    )  # fmt: skip
+
+    columns: list[Column[Sequence[_Apart]]] = [
+        Column("probe", lambda mine: mine[0][0].cprbm.probe),
+        order("cprbm"),
+        order("fea"),
+        Column(f"CPRBM at {found.shown} from its limit", lambda mine: max(
+            (far / own.scale for (own, _), *_ in mine if (far := own.apart(found.shown)) is not None), default=None
+        ), percent),
+        Column("limits apart", worst, lambda each: _share(each[0].cprbm, each[1])),
+        Column("stated", worst, lambda each: _share(each[0].cprbm, each[2])),
+        Column("at", worst, lambda each: at_station(found.scene, each[0].cprbm.stage, each[0].cprbm.station or 0.0)),
+        Column("within", lambda mine: f"{sum(apart <= stated for _, apart, stated in mine)} of {len(mine)}"),
+    ]  # fmt: skip
+    note = (
+        "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
+        "a change that is round-off or turns back has no order. Distances at their worst."
+    )
+    return table_of("Orders and limits over all stations", columns, [mine for mine in groups if mine], note)
 
 
 def spread(orders: Iterable[float | None]) -> str:
