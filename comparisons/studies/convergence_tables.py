@@ -6,11 +6,10 @@ from typing import Literal, NamedTuple
 
 from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
-from comparisons.present.columns import Column, Plain, Table, plain, table_of, without_empty
+from comparisons.present.columns import Column, Plain, Table, columns_of, plain, table_of
 from comparisons.stations import last_station
 from comparisons.studies.families import Convergence, Family, size
 from comparisons.verdict import mechanism
-from cprbm_scene import Scene
 
 NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
@@ -139,36 +138,43 @@ def _mechanism(family: Family) -> str:
 
 
 def _limits(found: Convergence) -> Table:
-    scene = found.scene
+    scene, n = found.scene, found.shown
+
+    def unit(own: Family) -> tuple[float, str]:
+        return (1.0, "") if own.found is None else display_unit(scene, own.unit, size(own.found.value))
+
+    def probe(pair: Pair) -> str:
+        place = pair.cprbm.components[0]
+        return pair.cprbm.probe + (f" at {with_unit(scene, place, 'm', 4)}" if isinstance(place, float) else "")
+
+    def limit(solver: Literal["cprbm", "fea"]) -> list[Column[Pair]]:
+        path = f"{solver}.found"
+        return [
+            *columns_of(lambda pair, known: vector(known.value, unit(pair.cprbm)[0]), {f"{NAMES[solver]} limit": path}),
+            *columns_of(lambda pair, known: _share(pair.cprbm, size(known.uncertainty)), {"±": path}),
+        ]
+
+    columns: list[Column[Pair]] = [
+        Column("probe", probe),
+        Column("unit", lambda pair: unit(pair.cprbm)[1]),
+        Column(f"CPRBM at {n}", lambda pair: vector(pair.cprbm.values[n], unit(pair.cprbm)[0])
+               if pair.cprbm.found and n in pair.cprbm.values else None),
+        Column("from its limit", lambda pair: _share(pair.cprbm, pair.cprbm.apart(n))),
+        *limit("cprbm"),
+        *limit("fea"),
+        Column("limits apart", lambda pair: _share(pair.cprbm, pair.apart and pair.apart[0])),
+        Column("CPRBM limit from exact", lambda pair:
+               _share(pair.cprbm, size(pair.cprbm.found.value - pair.cprbm.exact))
+               if pair.cprbm.found and pair.cprbm.exact is not None else None),
+        Column("no limit because", lambda pair: "" if pair.cprbm.found else pair.cprbm.why),
+    ]  # fmt: skip
     note = (
         f"Both solvers in {found.series[0].theory}. Limits by Richardson's extrapolation; fractions of the probe's "
         "largest value in the stage. Stresses at one place."
     )
-    return without_empty(
-        Table(
-            f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}",
-            ("probe", "unit", f"CPRBM at {found.shown}", "from its limit", "CPRBM limit", "±", "FEA limit", "±",
-             "limits apart", "CPRBM limit from exact", "no limit because"),
-            tuple(_limit_row(scene, found.shown, pair) for pair in pairs_of(found.last)),
-            note + (f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""),
-        )
-    )  # fmt: skip
-
-
-def _limit_row(scene: Scene, n: int, pair: Pair) -> tuple[str, ...]:
-    """Cells of a probe: value at N, both limits with their uncertainties, distances, and why there is no limit."""
-    own, place = pair.cprbm, pair.cprbm.components[0]
-    probe = own.probe + (f" at {with_unit(scene, place, 'm', 4)}" if isinstance(place, float) else "")
-    factor, unit = (1.0, "") if own.found is None else display_unit(scene, own.unit, size(own.found.value))
-    value = vector(own.values[n], factor) if own.found and n in own.values else "–"
-    limits = []
-    for family in pair:
-        known = family.found
-        limits += [vector(known.value, factor), _share(own, size(known.uncertainty))] if known else ["–", "–"]
-    off = None if own.found is None or own.exact is None else size(own.found.value - own.exact)
-    apart = _share(own, pair.apart and pair.apart[0])
-    why = "" if own.found else own.why
-    return probe, unit, value, _share(own, own.apart(n)), *limits, apart, _share(own, off), why
+    note += f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""
+    title = f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}"
+    return table_of(title, columns, pairs_of(found.last), note)
 
 
 def _share(family: Family, value: float | None) -> str:
