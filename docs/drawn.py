@@ -28,11 +28,10 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from comparisons.formats import axis_unit, display_unit, number
-from comparisons.offset_verdict import compared_offset
 from comparisons.present import figures
 from comparisons.present.columns import Figure
 from comparisons.present.curves import curve_figures, stress_figures
-from comparisons.present.offset import offset_figures
+from comparisons.present.offset import compared_offset, offset_figures
 from comparisons.quantities import load_unit, unit_of
 from comparisons.writing import write
 from cprbm_scene import Answer, OffsetQuestion, Scene, Stage

@@ -52,7 +52,7 @@ NO_WORSE = 1.01
 """Allowed error of a peer over the error of the CPRBM on the same problem: within the digits of a table."""
 
 Clock = Literal["wall", "cpu"]
-CLOCKS: Mapping[Clock, Callable[[], float]] = frozendict({"wall": time.perf_counter, "cpu": time.process_time})
+CLOCKS: dict[Clock, Callable[[], float]] = {"wall": time.perf_counter, "cpu": time.process_time}
 """Elapsed seconds, and seconds of the processor, which other work hardly changes."""
 
 Extent = Clocked | Literal["set-up"]
@@ -160,27 +160,6 @@ def outcome_of(answer: Answer) -> Outcome:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Sizes and repetitions of a benchmark.
-
-    Attributes:
-        sizes: numbers of links and elements by method, ascending.
-        kinematics: theory of the finite elements.
-        repeat: number of solves at each size.
-        at_most: seconds, as above.
-        whole: True for the whole scene, False for its last loads.
-        clock: kind of seconds.
-    """
-
-    sizes: Mapping[str, tuple[Count, ...]]
-    kinematics: Kinematics = "bending"
-    repeat: int = 5
-    at_most: float = 30.0
-    whole: bool = False
-    clock: Clock = "wall"
-
-
 @dataclass(slots=True)
 class Timing:
     """Runs of a method at a size; during a session the runs so far.
@@ -249,31 +228,39 @@ class Session:
     """A benchmark, also while it runs: :meth:`do` makes a run, all else speaks of the runs so far.
 
     Attributes:
-        scene, plan: the question; contenders: the methods; machine: the machine and the versions.
+        scene: the question; machine: the machine and the versions.
+        sizes: numbers of links and elements by method, ascending.
         reference: of the errors.
+        kinematics: theory of the finite elements.
+        repeat: number of solves at each size.
+        at_most: seconds, as above.
+        whole: True for the whole scene, False for its last loads.
+        clock: kind of seconds.
         absent: methods that take no part, with reasons.
-        clock: seconds; None for the clock of the plan.
         largest: by name of a method that has run, N above which no size begins.
         timings: of every method by ascending N, also without a run.
     """
 
     scene: Scene
-    plan: Plan
-    contenders: tuple[Contender, ...]
     machine: Mapping[str, str | int]
+    sizes: Mapping[Contender, tuple[Count, ...]]
     reference: Reference = NOTHING
+    kinematics: Kinematics = "bending"
+    repeat: int = 5
+    at_most: float = 30.0
+    whole: bool = False
+    clock: Clock = "wall"
     absent: Mapping[str, str] = frozendict()
-    clock: Callable[[], float] | None = None
     largest: dict[str, float] = field(default_factory=dict)
     timings: list[Timing] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Begin with all sizes of the plan."""
-        self.timings = [Timing(each, count) for each in self.contenders for count in self.plan.sizes[each.name]]
+        """Begin with all sizes."""
+        self.timings = [Timing(each, count) for each, counts in self.sizes.items() for count in counts]
 
     def jobs(self) -> list[Timing]:
         """All runs: by repetition, by size, and at each size every method with this size."""
-        return sorted(self.timings, key=lambda timing: timing.n) * self.plan.repeat
+        return sorted(self.timings, key=lambda timing: timing.n) * self.repeat
 
     def after_all(self) -> Self:
         """This session after all runs."""
@@ -283,7 +270,7 @@ class Session:
 
     def do(self, job: Timing) -> Self:
         """This session after a run; no run where the question is refused or takes too long."""
-        name, most = job.contender.name, self.plan.at_most
+        name, most = job.contender.name, self.at_most
         if job.refusal or self._is_late(job) or sum(map(sum, job.seconds)) > most:
             return self
         try:
@@ -310,8 +297,8 @@ class Session:
         return timing.n > self.largest.get(timing.contender.name, math.inf)
 
     def _run(self, job: Timing) -> tuple[tuple[float, float], Outcome]:
-        run = job.contender.begin(self.scene, job.count, self.plan.at_most)
-        clock = self.clock or CLOCKS[self.plan.clock]
+        run = job.contender.begin(self.scene, job.count, self.at_most)
+        clock = CLOCKS[self.clock]
         begin = clock()
         solve = run.set_up()
         ready = clock()
@@ -337,7 +324,7 @@ class Session:
 
     def omissions(self) -> tuple[Omission, ...]:
         """Methods and sizes without a run."""
-        late = f"more than {self.plan.at_most:g} s"
+        late = f"more than {self.at_most:g} s"
         return (
             *((name, None, why) for name, why in self.absent.items()),
             *(

@@ -6,7 +6,7 @@ and the size before, in the logarithms of error and time; without a size before,
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from comparisons.bench.measures import MEASURES, Measure, uncertainties
 from comparisons.bench.running import FIT_FROM, NO_WORSE, OURS, Clocked, Contender, Session, Timing, trend
 from comparisons.choices import Count
 from comparisons.formats import number, percent
-from comparisons.present.canvas import Axes, canvas, finished, logarithmic
+from comparisons.present.canvas import Line, Panel, chart
 from comparisons.present.columns import (
     NOTHING,
     Column,
@@ -88,57 +88,43 @@ def pictures(measured: Session) -> tuple[Figure, ...]:
 
 
 def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
-    with canvas(6.4, 1.2 + 3.6 * len(measures), len(measures), shared="x") as (drawing, panels):
-        for axes, measure in zip(panels, measures, strict=True):
-            for method, mine in rows.items():
-                shown = [row for row in mine if row.errors.get(measure, 0.0) > 0.0]
-                points = [(row.median("both"), row.errors[measure]) for row in shown]
-                _line(axes, method, points, method.label)
-                for place, below in {0: 3.0, len(shown) - 1: -10.0}.items() if shown else ():
-                    text = size_text(shown[place].count)
-                    axes.annotate(text, points[place], (5.0, below), textcoords="offset points", color=method.look[0],
-                                  fontsize=8.0)  # fmt: skip
-        for axes, measure in zip(panels, measures, strict=True):
-            _decades(axes, _MEASURED[measure])
-        panels[-1].set_xlabel("seconds of set-up and solve")
-        caption = "Error against time, each point a number of links or elements."
-        return finished(drawing, "bench-precision", caption, ("upper center", 3))
+    panels = []
+    for measure in measures:
+        shown = {method: [row for row in mine if row.errors.get(measure, 0.0) > 0.0] for method, mine in rows.items()}
+        points = {method: [(row.median("both"), row.errors[measure]) for row in mine] for method, mine in shown.items()}
+        texts = [
+            (size_text(mine[place].count), points[method][place],
+             {"xytext": (5.0, below), "color": method.look[0], "fontsize": 8.0})
+            for method, mine in shown.items() if mine for place, below in {0: 3.0, len(mine) - 1: -10.0}.items()
+        ]  # fmt: skip
+        lines = [_line(method, mine) for method, mine in points.items() if mine]
+        panels.append(Panel(_MEASURED[measure], lines, texts=texts))
+    caption, abscissa = "Error against time, each point a number of links or elements.", "seconds of set-up and solve"
+    return chart("bench-precision", caption, abscissa, panels, panel=(6.4, 4.0), decades=(), legend=("upper center", 3))
 
 
 def _growth(rows: Rows) -> Figure:
-    with canvas(6.4, 7.2, 2, shared="x", heights=(3, 2)) as (drawing, (seconds, iterations)):
-        for method, mine in rows.items():
-            _, exponent, _ = trend(tuple(mine))
-            label = method.label + ("" if exponent is None else f": exponent {exponent:.2f}")
-            _line(seconds, method, [(row.n, row.median("both")) for row in mine], label)
-            _line(iterations, method, [(row.n, max(row.iterations, 1)) for row in mine], label)
-        sizes = sorted({row.n for mine in rows.values() for row in mine})
-        _decades(seconds, "seconds of set-up and solve", sizes)
-        _decades(iterations, "iterations, all stations", sizes)
-        iterations.set_xlabel("links or elements per beam, N")
-        drawing.legend(*seconds.get_legend_handles_labels(), loc="outside upper center", ncols=2)
-        return finished(drawing, "bench", "Median time and iterations against links or elements.")
+    exponents = {method: trend(tuple(mine))[1] for method, mine in rows.items()}
+    names = {method: "" if e is None else f": exponent {e:.2f}" for method, e in exponents.items()}
+    ordinates: dict[str, Callable[[Timing], float]] = {
+        "seconds of set-up and solve": lambda row: row.median("both"),
+        "iterations, all stations": lambda row: max(row.iterations, 1),
+    }
+    panels = [
+        Panel(name, [_line(method, [(row.n, of(row)) for row in mine], names[method]) for method, mine in rows.items()])
+        for name, of in ordinates.items()
+    ]
+    sizes = sorted({row.n for mine in rows.values() for row in mine})
+    caption, abscissa = "Median time and iterations against links or elements.", "links or elements per beam, N"
+    return chart("bench", caption, abscissa, panels, panel=(6.4, 3.2), decades=sizes, legend=("upper center", 2))
 
 
-def _line(axes: Axes, method: Contender, points: Sequence[tuple[float, float]], label: str) -> None:
-    """Draw the points of a method with its colour and marker; without points nothing, not even a label."""
+def _line(method: Contender, points: Sequence[tuple[float, float]], name: str = "") -> Line:
+    """Points of a method with its colour and marker, and a ``name`` behind the label."""
     colour, marker = method.look
-    if points:
-        axes.plot(*zip(*points, strict=True), f"-{marker}", color=colour, markersize=5, linewidth=1.1, label=label)
-
-
-def _decades(axes: Axes, name: str, sizes: Sequence[float] = ()) -> None:
-    """Logarithmic scales with whole decades, so that an axis has two ticks or more, and ticks at the sizes."""
-    logarithmic(axes, sizes)
-    axes.set(ylabel=name, ylim=_whole(axes.get_ylim()))
-    if not sizes:
-        axes.set_xlim(_whole(axes.get_xlim()))  # of all panels that share the axis
-
-
-def _whole(interval: tuple[float, float]) -> tuple[float, float]:
-    """The whole decades around an interval."""
-    low, high = np.log10(interval)
-    return float(10.0 ** np.floor(low)), float(10.0 ** np.ceil(high))
+    look = {"linestyle": "-", "marker": marker, "color": colour, "markersize": 5, "linewidth": 1.1}
+    xs, ys = zip(*points, strict=True)
+    return xs, ys, {**look, "label": f"{method.label}{name}"}
 
 
 def tables_of(measured: Session) -> tuple[Table, ...]:
@@ -161,7 +147,7 @@ def ending_of(timing: Timing) -> str:
 
 
 def _note(measured: Session) -> str:
-    extent = "the whole scene" if measured.plan.whole else "the last load, from the state without stress"
+    extent = "the whole scene" if measured.whole else "the last load, from the state without stress"
     off = {measure: percent(u) for measure, u in uncertainties(measured.scene, measured.reference).items() if u > 0.0}
     known = f"; itself known to {', '.join(f'{u} ({measure})' for measure, u in off.items())}" if off else ""
     peers = (
@@ -171,7 +157,7 @@ def _note(measured: Session) -> str:
         else ""
     )
     return (
-        f"Seconds{_OF_CLOCK[measured.plan.clock]} for {extent}: medians of the set-up and of the solve, and the "
+        f"Seconds{_OF_CLOCK[measured.clock]} for {extent}: medians of the set-up and of the solve, and the "
         "distance of the solve's quartiles. N: links or elements per beam. Errors: the largest of displacements and "
         "rotations (places), of contacts' and drives' forces (forces), against "
         f"{measured.reference.by}{known}.{peers}"
@@ -249,16 +235,16 @@ def _omissions(measured: Session) -> Table:
 
 def document(measured: Session) -> Plain:
     """``bench``: rows, fastest methods, ratios, trends; times in seconds, errors as fractions."""
-    plan, reference = measured.plan, measured.reference
+    reference = measured.reference
     # the project's own methods first, then peers by their names
     left_out = sorted(measured.omissions(), key=lambda one: (OURS.index(one[0]) if one[0] in OURS else 9, one[0]))
     return {
         "case": measured.scene.name,
         "machine": plain(measured.machine),
-        "repeat": plan.repeat,
-        "kinematics": plan.kinematics,
-        "clock": plan.clock,
-        "stations": "all" if plan.whole else "last",
+        "repeat": measured.repeat,
+        "kinematics": measured.kinematics,
+        "clock": measured.clock,
+        "stations": "all" if measured.whole else "last",
         "tolerance": _tolerance(measured),
         "reference": {"by": reference.by, "uncertainty": plain(uncertainties(measured.scene, reference))},
         "rows": records_of(_KEYS, measured.rows()),
@@ -301,11 +287,11 @@ def seconds_at(points: Sequence[tuple[float, float]], target: float) -> float | 
     first = max((place + 1 for place, (error, _) in enumerate(points) if error > target), default=0)
     if first == len(points):
         return None
-    (error, seconds), (before, quick) = points[first], points[max(first - 1, 0)]
-    if first == 0 or min(error, seconds, quick) <= 0.0:
-        return seconds
-    share = math.log(before / target) / math.log(before / error)
-    return math.exp(math.log(quick) + share * math.log(seconds / quick))
+    around = points[max(first - 1, 0) : first + 1]
+    if len(around) == 1 or min(map(min, around)) <= 0.0:
+        return points[first][1]
+    errors, seconds = np.log(around[::-1]).T
+    return float(np.exp(np.interp(math.log(target), errors, seconds)))
 
 
 def ratios(measured: Session) -> list[Plain]:
@@ -315,14 +301,13 @@ def ratios(measured: Session) -> list[Plain]:
     """
     found = []
     for ours in (row for row in measured.rows("paper") if row.counts):
-        rows = {row.contender.name: row for row in measured.rows() if row.count == ours.count and row.counts}
-        record: Plain = {"n": plain(ours.count), **dict.fromkeys(_UNTIMED)}
-        for method in measured.methods():
-            for clocked in method.ratios:
-                mine, theirs = ours.median(clocked), rows.get(method.name)
-                record[_ratio_key(method.name, clocked)] = theirs.median(clocked) / mine if theirs and mine else None
-        if rows.keys() - {"paper", "fea"}:
-            found.append({**record, "iterations_per_station": ours.iterations_per_station})
+        rows = {row.contender: row for row in measured.rows() if row.count == ours.count and row.counts}
+        times: Plain = dict.fromkeys(_UNTIMED) | {
+            _ratio_key(method.name, clocked): rows[method].median(clocked) / mine if method in rows and mine else None
+            for method in measured.methods() for clocked in method.ratios for mine in (ours.median(clocked),)
+        }  # fmt: skip
+        if any(method.ratios for method in rows):
+            found.append({"n": plain(ours.count), **times, "iterations_per_station": ours.iterations_per_station})
     return found
 
 

@@ -22,9 +22,9 @@ from comparisons.cli import output
 from comparisons.cli.commands import load_tool
 from comparisons.cli.errors import code_of
 from comparisons.cli.main import OPTIMISERS
-from comparisons.offset_verdict import Compared, compared_offset
 from comparisons.present import brief, csv_table, figures, page
 from comparisons.present.columns import Figure, Plain, Section
+from comparisons.present.offset import Compared, compared_offset
 from comparisons.store import Run, run_into
 from comparisons.studies import calibration, convergence, table1
 from comparisons.studies.report import Report
@@ -229,8 +229,6 @@ def bench(
     if not taking:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in absent.items())
         raise click.UsageError(f"No method is left: {reasons}.")
-    own = {each.name: running.sizes_of(each, counts) for each in taking}
-    plan = running.Plan(own, request.choices.kinematics_of(opened), repeat, request.at_most, whole, clock)
     question = measures.benchmark_scene(opened)
     request = request.with_room()
     if request.out is not None:
@@ -238,7 +236,18 @@ def bench(
     with output.status(shown=not request.quiet) as say:
         say("reference of the errors")
         known = measures.reference(question, request.solvers)
-    session = running.Session(opened if whole else question, plan, taking, provenance.machine(), known, absent)
+    session = running.Session(
+        opened if whole else question,
+        provenance.machine(),
+        {each: running.sizes_of(each, counts) for each in taking},
+        known,
+        request.choices.kinematics_of(opened),
+        repeat,
+        request.at_most,
+        whole,
+        clock,
+        absent,
+    )
     take_steps(request, session, session.jobs(), running.Session.do, bench_section, pictures)
     failed = [row for row in session.rows() if row.contender.name in running.OURS and not row.outcome.completed]
     for row in failed:

@@ -124,18 +124,14 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
         elif {part.dxftype() for part in parts} <= _PLACES.keys():
             for place, part in enumerate(parts, len(curves) + 1):
                 tag = layer if layer != "0" else f"curve{place}"
-                curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", _along(part), None))
+                points_along = np.array([tuple(each) for each in _PLACES[part.dxftype()](part)])
+                curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", points_along, None))
         else:
             refused.append(
                 f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), "
                 "no line, arc, spline, elliptic arc or polyline"
             )
     return Drawing(tuple(curves), {layer: np.array(each) for layer, each in points.items()}, tuple(refused))
-
-
-def _along(part) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001 - ezdxf exports no types
-    """Places (k, 3) along a line, an arc, a spline or an elliptic arc."""
-    return np.array([tuple(place) for place in _PLACES[part.dxftype()](part)])
 
 
 def _with_gmsh(path: Path, unit: str) -> Drawing:

@@ -26,7 +26,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import jinja2
 import numpy as np
@@ -59,14 +59,20 @@ class Choices:
     within: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Beam:
-    """A beam with its name, drawn curve, record, and a statement on the accuracy of the record."""
+class Fit(NamedTuple):
+    """A ``curve``, and the largest distance of the points from the curve, δ: ``deviation``, m."""
+
+    curve: Line | Arc | Spline
+    deviation: float
+
+
+class _Beam(NamedTuple):
+    """A beam with its name, drawn curve, length of the polyline, and record."""
 
     name: str
     drawn: DrawnCurve
-    curve: Line | Arc | Spline
-    accuracy: str
+    length: float
+    fit: Fit
 
 
 _Bodies = dict[str, dict[str, Array]]
@@ -145,14 +151,7 @@ def _beam(curve: DrawnCurve, name: str, z: float, choices: Choices, near: float)
     if made is None:
         found = f"a curve that no spline follows within {choices.within:g} of the length"
         return _refusal(curve, found, "a smooth curve, cut at corners, or a larger --within")
-    if not isinstance(made.curve, Spline):
-        return _Beam(name, curve, made.curve, ", to round-off")
-    known = "" if curve.directions is not None else ", known by places alone"
-    accuracy = (
-        f"{known}: a spline through {len(made.curve.points)} places, within {made.deviation:.2g} {choices.unit} of "
-        f"{len(p)} places ({made.deviation / length:.1g} of the length)"
-    )
-    return _Beam(name, curve, made.curve, accuracy)
+    return _Beam(name, curve, length, made)
 
 
 def _bodies(drawing: Drawing, ends: Array, near: float) -> _Bodies:
@@ -190,7 +189,8 @@ def _text(
     # a key with an accent stands in quotes, a comment has no control characters
     environment.filters["key"] = lambda name: name if name.isascii() else f'"{name}"'
     environment.filters["comment"] = lambda text: re.sub(r"[\x00-\x1f\x7f]", " ", text)
-    bodies = _bodies(drawing, np.array([end for beam in beams for end in (beam.curve.start, beam.curve.end)]), near)
+    curves = [beam.fit.curve for beam in beams]
+    bodies = _bodies(drawing, np.array([end for curve in curves for end in (curve.start, curve.end)]), near)
     template = files("comparisons.importing").joinpath("scene.toml.jinja").read_text(encoding="utf-8")
     return environment.from_string(template).render(
         file=path.name,
@@ -200,7 +200,10 @@ def _text(
         ground=GROUND,
         bodies=bodies,
         movable=[name for body, points in bodies.items() if body not in GROUND for name in points],
-        beams=[(beam, *(_point_at(bodies, end, near) for end in (beam.curve.start, beam.curve.end))) for beam in beams],
+        beams=[
+            (beam, _point_at(bodies, curve.start, near), _point_at(bodies, curve.end, near))
+            for beam, curve in zip(beams, curves, strict=True)
+        ],
     )
 
 
@@ -210,14 +213,6 @@ MOST = 257
 
 _DIGITS = 13
 _FINE = 8001
-
-
-@dataclass(frozen=True, slots=True)
-class Fit:
-    """A ``curve``, and the largest distance of the points from the curve, δ: ``deviation``, m."""
-
-    curve: Line | Arc | Spline
-    deviation: float
 
 
 def fit(p: Array, directions: Array | None, allowed: float) -> Fit | None:

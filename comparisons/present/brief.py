@@ -9,9 +9,9 @@ from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
 from comparisons.formats import at_station, component_names, components, number, percent
-from comparisons.offset_verdict import Compared, OffsetComparison
 from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
+from comparisons.present.offset import Compared, OffsetComparison
 from comparisons.present.row_tables import row_units, share
 from comparisons.present.table import brief_lines
 from comparisons.sentences import pressure, remedy_sentence, theory_sentence, unreached_sentence

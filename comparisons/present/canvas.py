@@ -1,4 +1,4 @@
-"""The door to Matplotlib, which loads at the first drawing: canvases, axes, and finished figures.
+"""The door to Matplotlib, which loads at the first drawing: canvases, charts of lines, and finished figures.
 
 The same answers give the same bytes: no dates, and identifiers from a fixed salt.
 """
@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from comparisons.formats import display_unit
 from comparisons.geometry import longest
@@ -31,6 +32,16 @@ BLUE, RED, GREY, INK, GREEN, RULE = "#1f5fa8", "#c8321e", "#8a8a8a", "#202428", 
 LINES = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))
 """Lines and markers of the probes in one figure."""
 
+Look = Mapping[str, Any]
+"""Matplotlib's keywords of a line or of a text."""
+
+Line: TypeAlias = tuple[ArrayLike, ArrayLike, Look]
+"""Abscissae (k,), ordinates (k,) and look."""
+
+Text: TypeAlias = tuple[str, tuple[float, float], Look]
+"""A text, its place in the panel, and the look with the distance from the place in points."""
+
+_BAND = "#eef2f7"
 _MARGIN = 0.1
 """White margin of a figure, inches."""
 
@@ -74,7 +85,6 @@ def canvas(
     count: int = 1,
     columns: int = 1,
     shared: Literal["", "x", "y", "xy"] = "",
-    heights: Sequence[float] | None = None,
 ) -> Iterator[tuple[Drawing, list[Axes]]]:
     """Context with an empty drawing and its axes; draw and finish it inside the context.
 
@@ -83,20 +93,83 @@ def canvas(
         count: number of axes, row by row.
         columns: number of columns.
         shared: axes of abscissae, of ordinates or of both that have one range.
-        heights: ratios of the heights of the rows; None for equal heights.
     """
     import matplotlib.figure
 
     with matplotlib.rc_context(_STYLE):
         drawing, rows = matplotlib.figure.Figure(figsize=(width, height), layout="constrained"), -(-count // columns)
-        axes = drawing.subplots(
-            rows, columns, sharex="x" in shared, sharey="y" in shared, squeeze=False, height_ratios=heights
-        ).ravel()
+        axes = drawing.subplots(rows, columns, sharex="x" in shared, sharey="y" in shared, squeeze=False).ravel()
         for spare in axes[count:]:
             spare.remove()
         for each in axes[:count]:
             each.locator_params(axis="x", nbins=int(width / columns))  # an inch for a number
         yield drawing, [*axes[:count]]
+
+
+class Panel(NamedTuple):
+    """Axes with lines.
+
+    Attributes:
+        ordinate: label.
+        lines: all lines.
+        title: of the axes.
+        band: half of the height of a tinted band round zero on linear axes.
+        texts: beside places.
+    """
+
+    ordinate: str
+    lines: Sequence[Line]
+    title: str = ""
+    band: float = 0.0
+    texts: Sequence[Text] = ()
+
+
+def chart(
+    name: str,
+    caption: str,
+    abscissa: str,
+    panels: Sequence[Panel],
+    *,
+    panel: tuple[float, float] = (5.2, 2.5),
+    columns: int = 1,
+    shared: Literal["", "x", "y", "xy"] = "x",
+    decades: Sequence[float] | None = None,
+    marks: Sequence[tuple[float, str]] = (),
+    legend: tuple[str, int] | None = None,
+) -> Figure:
+    """Figure of panels with lines, row by row.
+
+    Args:
+        name, caption: of the figure.
+        abscissa: label of the abscissa.
+        panels: of the figure.
+        panel: width and height of a panel, inches.
+        columns, shared: as of :func:`canvas`.
+        decades: numbers on the abscissa of logarithmic axes, or none for whole decades; None for linear axes.
+        marks: abscissa and colour of dotted lines across all panels.
+        legend: common legend, as of :func:`finished`; None for a legend in every panel.
+    """
+    width, height = columns * panel[0], 0.8 + panel[1] * -(-len(panels) // columns)
+    with canvas(width, height, len(panels), columns, shared) as (drawing, plots):
+        for axes, each in zip(plots, panels, strict=True):
+            if decades is None:
+                axes.axhspan(-each.band, each.band, color=_BAND, linewidth=0.0, zorder=0)
+                axes.axhline(0.0, color=GREY, linewidth=0.5)
+            for xs, ys, look in each.lines:
+                axes.plot(xs, ys, **look)
+            for x, colour in marks:
+                axes.axvline(x, color=colour, linewidth=0.7, linestyle=":")
+            for text, place, look in each.texts:
+                axes.annotate(text, place, textcoords="offset points", **look)
+            axes.set(title=each.title, ylabel=each.ordinate)
+            if legend is None and each.lines:
+                axes.legend(loc="best")
+        if decades is not None:
+            for axes in plots:
+                _logarithmic(axes, decades)
+        for axes in plots[-columns:]:
+            axes.set_xlabel(abscissa)
+        return finished(drawing, name, caption, legend)
 
 
 def panels(count: int, height: float) -> tuple[float, float, int, int]:
@@ -106,9 +179,13 @@ def panels(count: int, height: float) -> tuple[float, float, int, int]:
 
 
 def finished(drawing: Drawing, name: str, caption: str, legend: tuple[str, int] | None = None) -> Figure:
-    """The figure of a drawing, with a common ``legend`` at a place and with a number of columns."""
+    """The figure of a drawing, with a ``legend`` of every label once, outside all axes: place and number of columns."""
     if legend is not None:
-        common_legend(drawing, *legend)
+        pairs = [pair for axes in drawing.axes for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
+        first = {label: handle for handle, label in reversed(pairs)}
+        names = [*dict.fromkeys(label for _, label in pairs)]
+        place, columns = legend
+        drawing.legend([first[each] for each in names], names, loc=f"outside {place}", ncols=columns, fontsize=10.0)  # type: ignore[call-overload]
     layout = drawing.get_layout_engine()
     if layout is not None:  # made once, it serves both formats
         layout.execute(drawing)
@@ -191,24 +268,24 @@ def show_lengths(scene: Scene, axis: matplotlib.axis.Axis, name: str) -> None:
     axis.set_label_text(f"{name}, {unit}")
 
 
-def logarithmic(axes: Axes, x: Sequence[float] = ()) -> None:
-    """Give both axes logarithmic scales with a grid, and ticks at the numbers ``x``."""
+def _logarithmic(axes: Axes, x: Sequence[float]) -> None:
+    """Give axes logarithmic scales with a grid, and ticks at the numbers ``x``; otherwise an axis has whole decades."""
     axes.set(xscale="log", yscale="log")
+    axes.set_ylim(_whole(axes.get_ylim()))
     if x:
         axes.set_xticks(x, [f"{each:g}" for each in x])
+    else:
+        axes.set_xlim(_whole(axes.get_xlim()))  # of all panels that share the axis
     axes.minorticks_off()
     axes.grid(visible=True, which="major", color=RULE, linewidth=0.6)
+
+
+def _whole(interval: tuple[float, float]) -> tuple[float, float]:
+    """The whole decades around an interval: an axis has two ticks or more."""
+    low, high = np.log10(interval)
+    return float(10.0 ** np.floor(low)), float(10.0 ** np.ceil(high))
 
 
 def name_rows(axes: Axes, names: Sequence[str]) -> None:
     """Give the vertical axis a row for every name, from the top down."""
     axes.set(yticks=range(len(names)), yticklabels=names, ylim=(len(names) - 0.4, -0.6))
-
-
-def common_legend(drawing: Drawing, place: str, columns: int, size: float = 10.0) -> None:
-    """One legend outside all axes of a drawing, with every label once."""
-    pairs = [pair for axes in drawing.axes for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
-    labels = {label: handle for handle, label in reversed(pairs)}
-    names = [*dict.fromkeys(label for _, label in pairs)]
-    handles = [labels[name] for name in names]
-    drawing.legend(handles, names, loc=f"outside {place}", ncols=columns, fontsize=size)  # type: ignore[call-overload]

@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import cycle, groupby, pairwise
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparisons.case import Comparison
 from comparisons.formats import at_station, axis_unit, display_unit, number
 from comparisons.geometry import longest
-from comparisons.present.canvas import BLUE, GREY, LINES, RED, canvas, finished
+from comparisons.present.canvas import BLUE, LINES, RED, Line, Look, Panel, chart
 from comparisons.present.columns import Figure
 from comparisons.present.csv_table import pressing
 from comparisons.quantities import UNITS, arc_lengths, load_unit
@@ -29,74 +28,13 @@ from cprbm_scene import (
 )
 from cprbm_scene.curves import unit_vector as unit
 
-Look = Mapping[str, Any]
-"""Matplotlib's keywords of a line."""
-
-Line = tuple[Array, Array, Look]
-"""Abscissae (k,), ordinates (k,) and look."""
-
 FEA: Look = {"color": RED, "linewidth": 1.8, "label": "FEA"}
 CPRBM: Look = {"color": BLUE, "linestyle": "none", "marker": ".", "markersize": 5.0, "label": "CPRBM"}
-_BAND = "#eef2f7"
-_WIDTH, _HEIGHT = 5.2, 2.5  # inches: a figure, and a panel
 _MARKERS = 30  # most markers of a branch
 _SHOWN = 0.025  # half of the least shown part of a beam over the longest beam
 
-
-class Panel(NamedTuple):
-    """Axes with lines.
-
-    Attributes:
-        label: of the ordinate.
-        lines: all lines.
-        title: of the axes.
-        band: half of the height of a tinted band round zero; 0 without a band.
-    """
-
-    label: str
-    lines: Sequence[Line]
-    title: str = ""
-    band: float = 0.0
-
-
 Values = Callable[[StationAnswer], Array]
 """Value (1,) of a curve at a station, in SI; empty without a value."""
-
-
-def panels_figure(
-    name: str,
-    caption: str,
-    abscissa: str,
-    panels: Sequence[Panel],
-    marks: Sequence[tuple[float, str, str]] = (),
-    *,
-    shared: bool = True,
-) -> Figure:
-    """Figure of panels above each other.
-
-    Args:
-        name, caption: of the figure.
-        abscissa: label of the abscissa.
-        panels: from above to below.
-        marks: abscissa, colour and text of dotted lines across all panels.
-        shared: whether all panels have the same range of abscissae.
-    """
-    with canvas(_WIDTH, 0.8 + _HEIGHT * len(panels), len(panels), shared="x" if shared else "") as (drawing, plots):
-        for axes, panel in zip(plots, panels, strict=True):
-            axes.axhspan(-panel.band, panel.band, color=_BAND, linewidth=0.0, zorder=0)
-            axes.axhline(0.0, color=GREY, linewidth=0.5)
-            for xs, ys, look in panel.lines:
-                axes.plot(xs, ys, **look)
-            for x, colour, _ in marks:
-                axes.axvline(x, color=colour, linewidth=0.7, linestyle=":")
-            axes.set(title=panel.title, ylabel=panel.label.replace(" along", "\nalong"))  # a panel is 25 letters high
-            if panel.lines:
-                axes.legend(loc="best")
-        for place, (x, _, text) in enumerate(mark for mark in marks if mark[2]):
-            plots[0].annotate(text, (x, 1.0), xycoords=("data", "axes fraction"), ha="center",
-                              textcoords="offset points", xytext=(0, 3 + 12 * (place % 2)))  # fmt: skip
-        plots[-1].set_xlabel(abscissa)
-        return finished(drawing, name, caption)
 
 
 def _ordinates(scene: Scene, stages: Sequence[Stage]) -> Iterator[tuple[str, str, Mapping[str, Values]]]:
@@ -157,23 +95,21 @@ def _curve(
             for path in _paths(scene, stages, answers[name], of, (step, factor),
                                {**look, "label": f"{label}, {name}".removeprefix(", ")})
         ]  # fmt: skip
-        panels.append(Panel(f"{title}, {unit_name}", drawn))
-    ends = [(name, each) for name, answer in answers.items() for each in answer.critical if each.stage in names]
-    marks = [
-        (
-            each.value / step,
-            FEA["color"] if name == "FEA" else CPRBM["color"],
-            ""
-            if name == "FEA"
-            else f"{number(each.value / step, 4)} {step_unit}, {each.loss.value}".replace(" °", "°"),
-        )
-        for name, each in ends
-    ]
+        # a panel is 25 letters high
+        panels.append(Panel(f"{title}, {unit_name}".replace(" along", "\nalong"), drawn))
+    ends = {name: [each for each in answer.critical if each.stage in names] for name, answer in answers.items()}
+    marks = [(each.value / step, {"FEA": RED, "CPRBM": BLUE}[name]) for name, mine in ends.items() for each in mine]
+    above = [
+        (f"{number(each.value / step, 4)} {step_unit}, {each.loss.value}".replace(" °", "°"), (each.value / step, 1.0),
+         {"xycoords": ("data", "axes fraction"), "ha": "center", "xytext": (0, 3 + 12 * (place % 2))})
+        for place, each in enumerate(ends["CPRBM"])
+    ]  # fmt: skip
     titles = ", ".join(title for title, *_ in ordinates)
     jumps = " Dashed: jumps between the stations beside a critical point." if any(at.branch for at in mine) else ""
-    dotted = " Dotted: critical values of either solver, the CPRBM's with names." if ends else ""
+    dotted = " Dotted: critical values of either solver, the CPRBM's with names." if marks else ""
     caption = f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage.{jumps}{dotted}"
-    return panels_figure(f"path-{steps}", caption, f"{steps}, {step_unit}", panels, marks)
+    panels[0] = panels[0]._replace(texts=above)
+    return chart(f"path-{steps}", caption, f"{steps}, {step_unit}", panels, marks=marks)
 
 
 def _paths(
@@ -237,7 +173,7 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
             f"{band:g} % to either side is the allowance for the motion of the mesh where contacts are closed. "
             "Stations beside an event have no work–energy reaction."
         )
-        yield panels_figure(f"reaction-{drive}", caption, f"{drive}, {step_unit}", panels)
+        yield chart(f"reaction-{drive}", caption, f"{drive}, {step_unit}", panels)
 
 
 def _reaction_lines(
@@ -262,13 +198,17 @@ def _along_beams(
         lines: arc lengths, m, values, SI, and looks, by title of the panel.
     """
     title, si = quantity
-    factor, unit_name = display_unit(scene, si, max(np.abs(y).max() for panel in lines.values() for _, y, _ in panel))
+    factor, unit_name = display_unit(scene, si, max(np.max(np.abs(y)) for panel in lines.values() for _, y, _ in panel))
     metre, length_unit = display_unit(scene, "m", longest(scene))
     panels = [
-        Panel(f"{title}, {unit_name}", [(s / metre, y / factor, look) for s, y, look in panel], beam)
+        Panel(
+            f"{title}, {unit_name}",
+            [(np.asarray(s) / metre, np.asarray(y) / factor, look) for s, y, look in panel],
+            beam,
+        )
         for beam, panel in lines.items()
     ]
-    return panels_figure(name, caption, f"initial arc length, {length_unit}", panels, shared=False)
+    return chart(name, caption, f"initial arc length, {length_unit}", panels, shared="")
 
 
 def stress_figures(scene: Scene, fea: StationAnswer, cprbm: StationAnswer) -> Iterator[Figure]:

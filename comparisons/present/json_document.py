@@ -135,11 +135,8 @@ def critical(found: Critical) -> Plain:
 
 def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a list or None
     """Values of a probe: a number, a list of several numbers, None without a value."""
-    if found.size == 0:
-        return None
-    if found.size == 1 and probe.quantity not in STRESSES:
-        return plain(float(found[0]))
-    return [plain(float(value)) for value in found]
+    numbers = plain(found)
+    return (numbers or None) if found.size > 1 or probe.quantity in STRESSES else next(iter(numbers), None)
 
 
 def _search(tolerances: tuple[Tolerance, ...], name: str) -> Plain:

@@ -16,12 +16,12 @@ from urllib.parse import quote
 from comparisons.answer_file import packed
 from comparisons.case import Comparison
 from comparisons.formats import percent
-from comparisons.offset_verdict import Compared, OffsetComparison
 from comparisons.present import json_document, offset
 from comparisons.present.case_tables import case_sections, claims_table
 from comparisons.present.columns import Figure, Plain, Section, Table
 from comparisons.present.csv_table import contact_csv
 from comparisons.present.figures import comparison_figures
+from comparisons.present.offset import Compared, OffsetComparison
 from comparisons.present.stepper import HEADERS, SHADES, stations_json, stepper
 from comparisons.present.table import STYLES, html_cells
 from comparisons.writing import text_of, write
@@ -169,10 +169,8 @@ def light(section: Section) -> Section:
 
 def html(page: Page) -> str:
     """The page as HTML."""
-    words = [each.word for each in page.chapters if each.word]
-    tally = {word: words.count(word) for word in ("AGREE", "UNDECIDED", "DIFFER") if word in words}
-    context = {"page": page, "tally": tally, "script": _beside("report.js"), "headers": HEADERS}
-    return rendered("page.html", {**context, "shades": range(SHADES)})
+    further = {"script": _beside("report.js"), "headers": HEADERS, "shades": range(SHADES)}
+    return rendered("page.html", {"page": page, **further})
 
 
 def rendered(template: str, context: Mapping[str, object]) -> str:
@@ -199,8 +197,7 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
         "joined": lambda sentence: sentence.replace(" %", "\u00a0%"),  # on the line of the number
     }
-    whole = {**context, "style": _beside("style.css"), "marked": STYLES}
-    return environment.get_template(template).render(whole) + "\n"
+    return environment.get_template(template).render(context, style=_beside("style.css"), marked=STYLES) + "\n"
 
 
 def _beside(name: str) -> str:

@@ -71,11 +71,10 @@ class Part(NamedTuple):
 
 
 class Arrow(NamedTuple):
-    """Forces (k, 2), N, and a moment, N·m, of a contact (``push``) or of a load or drive, ``on`` a beam or body."""
+    """Forces (k, 2), N, and a moment, N·m, of a contact (``push``), or of a load or drive."""
 
     kind: Literal["push", "load"]
     name: str
-    on: str
     places: Array
     forces: Array
     moment: float = 0.0
@@ -292,7 +291,7 @@ def _pushes(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) -
                 places = places - 0.5 * t[:, None] * pressing / size[mine, None]
             if isinstance(contact, SelfContact) and len(mine) > 1:  # two places of one beam
                 groups = np.split(groups[0], [int(np.argmax(np.diff(forces.s[mine]))) + 1])
-            yield from (Arrow("push", name, on, places[group], pressing[group]) for group in groups)
+            yield from (Arrow("push", name, places[group], pressing[group]) for group in groups)
 
 
 def _loads(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) -> Iterator[Arrow]:
@@ -300,27 +299,24 @@ def _loads(scene: Scene, station: StationAnswer, strips: Mapping[str, Strip]) ->
     for at in station.forces:
         if at.source in scene.drives:
             turns = not isinstance(scene.drives[at.source], DisplacementDrive)
-            yield Arrow(
-                "load", at.source, at.target, at.place[None], at.force[None], float(at.moment) if turns else 0.0
-            )
+            yield Arrow("load", at.source, at.place[None], at.force[None], float(at.moment) if turns else 0.0)
     values = scene.values_at(station.stage, station.value)
     for name, load in scene.loads.items():
-        value, (on, places) = values[name], _loaded(scene, station, load, strips)
+        value, places = values[name], _loaded(scene, station, load, strips)
         way = None if isinstance(load, Moment | BeamMoment) else np.array(unit(load.direction))
         force = np.zeros(2) if way is None else value * way
         if isinstance(load, DistributedLoad):
-            force *= (load.along[1] - load.along[0]) * float(strips[on].s[-1]) / len(places)
+            force *= (load.along[1] - load.along[0]) * float(strips[load.beam].s[-1]) / len(places)
         if value != 0.0:
-            yield from (Arrow("load", name, on, at[None], force[None], value if way is None else 0.0) for at in places)
+            yield from (Arrow("load", name, at[None], force[None], value if way is None else 0.0) for at in places)
 
 
-def _loaded(scene: Scene, station: StationAnswer, load: Load, strips: Mapping[str, Strip]) -> tuple[str, Array]:
-    """Body or beam, and places (k, 2), m, of a load: of a moment on a body the middle of the points."""
+def _loaded(scene: Scene, station: StationAnswer, load: Load, strips: Mapping[str, Strip]) -> Array:
+    """Places (k, 2), m, of a load: of a moment on a body the middle of the points."""
     if isinstance(load, Moment):
         corners = np.array([*scene.bodies[load.body].points.values()])
-        return load.body, carried(scene, station, load.body, corners).mean(axis=0)[None]
+        return np.asarray(carried(scene, station, load.body, corners).mean(axis=0)[None])
     if isinstance(load, Force):
-        on = scene.body_of(load.point)
-        return on, carried(scene, station, on, np.array([scene.place_of(load.point)]))
+        return carried(scene, station, scene.body_of(load.point), np.array([scene.place_of(load.point)]))
     u = np.linspace(*load.along, _LOADED) if isinstance(load, DistributedLoad) else np.array([load.at])
-    return load.beam, strips[load.beam].places(u)
+    return strips[load.beam].places(u)

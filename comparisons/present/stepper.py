@@ -21,7 +21,6 @@ import shapely
 
 from comparisons.case import Comparison
 from comparisons.formats import number
-from comparisons.geometry import length, points
 from comparisons.present.columns import NOTHING, Column, Plain, columns_of
 from comparisons.present.figures import colour_unit, view_title
 from comparisons.present.picture import Arrow, Bounds, Kind, View, bounds_of, names_by_place, view_of
@@ -69,8 +68,8 @@ def stepper(compared: Comparison) -> Plain | None:
     span            the largest stress of the colours with the unit
     ==============  ==================================================================
     """
-    scene, beams = compared.scene, compared.scene.beams
-    common, (cprbm, fea) = compared.runs.reached, (compared.runs.stations[solver] for solver in SOLVERS)
+    scene, common = compared.scene, compared.runs.reached
+    cprbm, fea = (compared.runs.stations[solver] for solver in SOLVERS)
     if not common:
         return None
     views = [view_of(scene, fea[where]) for where in common]
@@ -97,17 +96,16 @@ def stepper(compared: Comparison) -> Plain | None:
         cells = tuple(tuple(with_minus(column.cell(at)) if at else NOTHING for column in columns) for at in known)
         spots = tuple("{:g} {:g}".format(*np.round(place(view.points[point]))) for point in leaders)
         stations.append((view_title(scene, view), tuple(moving.values()), spots, cells))
-    rest = (points(beam.curve, np.linspace(0.0, length(beam.curve), 121)) for beam in beams.values())
     factor, unit = colour_unit(scene, "bending_stress", bounds.most)
     return {
         "width": float(round(sides[0] * scale)),
         "height": float(round(sides[1] * scale)),
-        "rest": "".join(line(place(each)) for each in rest),
+        "rest": "".join(line(place(strip.rest_line)) for strip in views[-1].strips.values()),
         "moving": tuple(moving),
         "points": tuple(labels),
         "names": tuple((name, units.get(name, "")) for name in names),
         "stations": tuple(stations),
-        "thick": tuple(name for name, beam in beams.items() if beam.thinnest * scale < _THINNEST),
+        "thick": tuple(name for name, beam in scene.beams.items() if beam.thinnest * scale < _THINNEST),
         "span": f"{number(bounds.most / factor)} {unit}" if bounds.most else "",
     }
 

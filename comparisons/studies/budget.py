@@ -50,6 +50,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.special import hyp2f1
 
 from comparisons.choices import Choices, check_counts
 from comparisons.geometry import bentness_on, length
@@ -80,10 +81,6 @@ LEAST = 1e-9
 _Runs = Mapping[str, Sequence[Answer]]
 """Answers by name: ``cprbm`` as chosen, ``cprbm auto`` at LEVELS, ``fea`` at TIGHTNESS, ``fea finer`` and
 ``solid`` at ELEMENTS."""
-
-_SERIES_BELOW = 0.1  # h where the terms left out and the digits that a − 1 loses are both below 1e-13
-
-_TERMS = 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,9 +273,6 @@ def inner_edge_factor(bentness: Array) -> Array:
     h = 0.5 * np.asarray(bentness, dtype=float)
     if not np.all((h >= 0.0) & (h < 1.0)):
         raise ValueError("thickness over radius must be at least 0 and less than 2")
-    series = h < _SERIES_BELOW
-    at = np.where(series, _SERIES_BELOW, h)
-    powers = 2.0 * np.arange(_TERMS)
-    b = np.where(series, np.sum(h[..., None] ** powers / (powers + 3.0), axis=-1), (np.arctanh(at) / at - 1.0) / at**2)
+    b = hyp2f1(1.0, 1.5, 2.5, h**2) / 3.0  # Σ h^(2k)/(2k + 3), without the cancellation of a − 1 at a small h
     a = 1.0 + h**2 * b
     return np.asarray((a - h * b) / (3.0 * b * (1.0 - h)))

@@ -1,11 +1,12 @@
 """Table, figure, sentences and documented JSON of an error budget."""
 
-from collections.abc import Sequence
+from itertools import chain
 
-from comparisons.choices import Count
+import numpy as np
+
 from comparisons.formats import at_station, number, percent
 from comparisons.opinions import claim_of
-from comparisons.present.canvas import Axes, canvas, finished, name_rows
+from comparisons.present.canvas import canvas, finished, name_rows
 from comparisons.present.columns import NOTHING, Column, Figure, Plain, Table, plain, table_of
 from comparisons.stations import last_station
 from comparisons.studies.budget import PARTS, Account, Budget
@@ -89,10 +90,16 @@ def _record(at: Budget) -> Plain:
 
 def budget_table(account: Account) -> Table:
     """Parts at the last station, per cent of the denominators; without columns of zeros for theories not chosen."""
+
+    def part(name: str) -> Column[Budget]:
+        return Column(name, lambda at: _cell(at, at.parts[name] if at.all_parts else None, sign=True))
+
+    uncertainty = Column[Budget]("±", lambda at: _cell(at, at.rest_uncertainty if at.all_parts else None))
+    parts = {name: [part(name), *[uncertainty] * (name == "rest")] for name in PARTS}
     columns = [
         Column[Budget]("probe", "row.probe.name"),
         Column("difference", lambda at: _cell(at, at.row.difference)),
-        *(column for name in PARTS if any(at.parts[name] for at in account.last) for column in _part_columns(name)),
+        *chain.from_iterable(parts[name] for name in PARTS if any(at.parts[name] for at in account.last)),
         Column("paper", lambda at: _cell(at, None if at.parts["contact"] else at.paper, sign=True)),
         Column("curved", lambda at: _cell(at, at.curved or None)),
         Column("missed", lambda at: _cell(at, at.missed, sign=True)),
@@ -105,71 +112,57 @@ def budget_table(account: Account) -> Table:
         "from auto to paper at the same links; curved, error of the straight-beam formula of stress, t/(3R) to first "
         "order; missed, limit of the finite elements less the solid's limit, with the uncertainty."
     )
-    sizes = f"{_count(account.choices.links)} links and {_count(account.choices.elements)} elements per beam"
+    links, elements = (
+        str(count) if isinstance(count, int) else ",".join(f"{beam}={n}" for beam, n in count.items())
+        for count in (account.choices.links, account.choices.elements)
+    )
+    sizes = f"{links} links and {elements} elements per beam"
     title = f"Error budget at {at_station(account.scene, *last_station(account.scene))} with {sizes}, %"
     return table_of(title, columns, account.last, note)
 
 
-def _part_columns(name: str) -> list[Column[Budget]]:
-    """Column of a part; of the rest with its uncertainty."""
-    found = [Column[Budget](name, lambda at: _cell(at, at.parts[name] if at.all_parts else None, sign=True))]
-    uncertainty = Column[Budget]("±", lambda at: _cell(at, at.rest_uncertainty if at.all_parts else None))
-    return [*found, uncertainty] if name == "rest" else found
-
-
 def budget_figures(account: Account) -> tuple[Figure, ...]:
-    """Composition of the differences at the last station; no figure without parts."""
+    """Composition of the differences at the last station; no figure without parts.
+
+    Negative parts of a budget stand to the left, positive parts to the right.
+    """
     budgets = [each for each in account.last if each.all_parts > 0.0]
     if not budgets:
         return ()
+    places = np.arange(len(budgets))
+    shares = np.array([[_share(each, each.parts[name]) for each in budgets] for name in LOOKS])
+    below, above = (np.cumsum(half(shares, 0.0), axis=0) for half in (np.minimum, np.maximum))
+    starts = np.where(shares < 0.0, below, above) - shares
+    missed = {place + 0.42: each for place, each in enumerate(budgets) if each.missed is not None}
+    caption = (
+        f"Parts of the differences at {at_station(account.scene, *last_station(account.scene))}: to the right "
+        "parts that make the difference larger, to the left parts that make it smaller; the diamond is the sum, "
+        "and the number at the right the difference."
+    )
     with canvas(9.0, 1.9 + 0.34 * len(budgets)) as (drawing, (axes,)):
-        _draw_parts(axes, budgets)
-        missed = _draw_missed(axes, budgets)
+        for (colour, label), own, start in zip(LOOKS.values(), shares, starts, strict=True):
+            if own.any():
+                axes.barh(places, own, left=start, height=0.66, color=colour, label=label)
+        axes.plot(shares.sum(axis=0), places, "D", color="white", markeredgecolor="black", markersize=5.0, label="sum",
+                  clip_on=False, zorder=3.0)  # fmt: skip
+        if missed:
+            sizes = [_share(at, at.missed) for at in missed.values()]
+            doubts = [_share(at, at.missed_uncertainty) for at in missed.values()]
+            axes.barh([*missed], sizes, xerr=doubts, height=0.14, color=MISSED, error_kw={"linewidth": 0.8},
+                      label="missed by beam theory: FEA to solid")  # fmt: skip
+            caption += " Thin bars: what the beam theories miss together, by the solid."
         axes.axvline(0.0, color="black", linewidth=0.8)
         name_rows(axes, [each.row.probe.name for each in budgets])
         axes.set_xlabel("share of all parts, %")
         for place, each in enumerate(budgets):
             text = percent(each.row.fraction(each.row.difference))
             axes.annotate(text, (1.02, place), xycoords=("axes fraction", "data"), va="center", fontsize=9.0)
-        drawing.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=9.0)
-        caption = (
-            f"Parts of the differences at {at_station(account.scene, *last_station(account.scene))}: to the right "
-            "parts that make the difference larger, to the left parts that make it smaller; the diamond is the sum, "
-            "and the number at the right the difference."
-        )
-        caption += " Thin bars: what the beam theories miss together, by the solid." if missed else ""
-        return (finished(drawing, "budget", caption),)
+        return (finished(drawing, "budget", caption, ("lower center", 4)),)
 
 
 def _share(budget: Budget, value: float | None) -> float:
     """A size in per cent of all parts together."""
     return 100.0 * (budget.row.fraction(value or 0.0) or 0.0) / budget.all_parts
-
-
-def _draw_parts(axes: Axes, budgets: Sequence[Budget]) -> None:
-    """Draw a bar of all parts for every budget: negative parts to the left, positive parts to the right."""
-    ends = [[0.0, 0.0] for _ in budgets]
-    for name, (colour, label) in LOOKS.items():
-        shares = [_share(each, each.parts[name]) for each in budgets]
-        if any(shares):
-            starts = [end[share < 0.0] for end, share in zip(ends, shares, strict=True)]
-            axes.barh(range(len(budgets)), shares, left=starts, height=0.66, color=colour, label=label)
-        for end, share in zip(ends, shares, strict=True):
-            end[share < 0.0] += share
-    sums = [sum(end) for end in ends]
-    axes.plot(sums, range(len(budgets)), "D", color="white", markeredgecolor="black", markersize=5.0, label="sum",
-              clip_on=False, zorder=3.0)  # fmt: skip
-
-
-def _draw_missed(axes: Axes, budgets: Sequence[Budget]) -> bool:
-    """Draw a thin bar below every budget with a value of the solid; True if there is any."""
-    known = {place + 0.42: each for place, each in enumerate(budgets) if each.missed is not None}
-    if known:
-        shares = [_share(at, at.missed) for at in known.values()]
-        doubts = [_share(at, at.missed_uncertainty) for at in known.values()]
-        axes.barh([*known], shares, xerr=doubts, height=0.14, color=MISSED, error_kw={"linewidth": 0.8},
-                  label="missed by beam theory: FEA to solid")  # fmt: skip
-    return bool(known)
 
 
 def _cell(budget: Budget, value: float | None, *, sign: bool = False) -> str:
@@ -179,7 +172,3 @@ def _cell(budget: Budget, value: float | None, *, sign: bool = False) -> str:
         return NOTHING
     mark = "" if not sign or fraction == 0.0 else "−" if fraction < 0.0 else "+"
     return f"{mark}{number(100.0 * abs(fraction))}"
-
-
-def _count(count: Count) -> str:
-    return str(count) if isinstance(count, int) else ",".join(f"{beam}={number}" for beam, number in count.items())

@@ -13,7 +13,7 @@ from comparisons.choices import Choices
 from comparisons.executor import ALONE, Crew
 from comparisons.formats import number, percent
 from comparisons.pairing import Solvers, exact_answer, exact_if_covered, paired
-from comparisons.present.canvas import GREY, canvas, finished
+from comparisons.present.canvas import GREY, Line, Panel, chart
 from comparisons.present.columns import Column, Figure, Plain, Section, Table, table_of
 from comparisons.stations import complete_part
 from comparisons.verdict import LARGEST_MEDIAN, SHARE_WITHIN, SOLVERS, ErrorRatio, Tally, Word, error_ratios, tally
@@ -213,34 +213,27 @@ def _worst(found: Calibration) -> Table:
 
 def pictures(found: Calibration) -> tuple[Figure, ...]:
     """Stated against true errors of every row, a panel for each solver and a colour for each case; if there are any."""
-    if not any(trial.ratios for trial in found.trials):
+    every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
+    if not every:
         return ()
-    with canvas(9.6, 5.2, 2, 2, "xy") as (drawing, panels):
-        every = [size for trial in found.trials for each in trial.ratios for size in _shares(each)]
-        low, high = 0.5 * min(every), 2.0 * max(every)
-        for axes, solver in zip(panels, SOLVERS, strict=True):
-            for place, (name, trials) in enumerate(found.by_case().items()):
-                points = [_shares(each) for trial in trials for each in trial.ratios if each.solver == solver]
-                colour, label = _COLOURS[place % len(_COLOURS)], name if solver == SOLVERS[0] else None
-                axes.plot(*np.array(points).reshape(-1, 2).T, "o", color=colour, markersize=2.5, alpha=0.6, label=label)
-            axes.plot([low, high], [low, high], "-", color="black", linewidth=1.0)
-            axes.plot([low, high], [LARGEST_MEDIAN * low, LARGEST_MEDIAN * high], "--", color=GREY, linewidth=1.0)
-            axes.set(
-                xscale="log",
-                yscale="log",
-                xlim=(low, high),
-                ylim=(low, high),
-                aspect="equal",
-                title=_NAMES[solver],
-                xlabel="true error / scale",
-            )
-        panels[0].set_ylabel("stated error / scale")
-        drawing.legend(loc="outside lower center", ncols=4, markerscale=2.0)
-        caption = (
-            "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
-            "true. Dashed: stated ten times the true one, which the median is not to exceed."
-        )
-        return (finished(drawing, "calibration", caption),)
+    panels, ends = list[Panel](), np.array([0.5 * min(every), 2.0 * max(every)])
+    for solver in SOLVERS:
+        lines: list[Line] = []
+        for place, (name, trials) in enumerate(found.by_case().items()):
+            points = [_shares(each) for trial in trials for each in trial.ratios if each.solver == solver]
+            look = {"linestyle": "none", "marker": "o", "markersize": 2.5, "alpha": 0.6, "label": name}
+            lines.append((*np.array(points).reshape(-1, 2).T, {**look, "color": _COLOURS[place % len(_COLOURS)]}))
+        lines.append((ends, ends, {"color": "black", "linewidth": 1.0}))
+        lines.append((ends, LARGEST_MEDIAN * ends, {"linestyle": "--", "color": GREY, "linewidth": 1.0}))
+        panels.append(Panel("" if panels else "stated error / scale", lines, _NAMES[solver]))
+    caption = (
+        "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
+        "true. Dashed: stated ten times the true one, which the median is not to exceed."
+    )
+    return (
+        chart("calibration", caption, "true error / scale", panels, panel=(4.8, 4.4), columns=2, shared="xy",
+              decades=(), legend=("lower center", 4)),
+    )  # fmt: skip
 
 
 def _shares(ratio: ErrorRatio) -> tuple[float, float]:

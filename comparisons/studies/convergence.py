@@ -4,7 +4,7 @@ Of an offset question the exact curve is known: the limit of every error is zero
 logarithm of their errors' ratio over the logarithm of the ratio of sizes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import log, nan
@@ -14,10 +14,10 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.executor import Crew
 from comparisons.formats import at_station, percent
-from comparisons.offset_verdict import OffsetRow, compared_offset
 from comparisons.pairing import OffsetConstruction, Solvers
-from comparisons.present.canvas import GREY, LINES, Axes, canvas, common_legend, finished, logarithmic
+from comparisons.present.canvas import GREY, LINES, Line, Panel, chart
 from comparisons.present.columns import Column, Figure, Section, Table, table_of
+from comparisons.present.offset import OffsetRow, compared_offset
 from comparisons.sentences import problem_sentences
 from comparisons.stations import at_shown, last_station
 from comparisons.store import AnswerMemory
@@ -102,24 +102,26 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
     if not last:
         return ()
     names = list(dict.fromkeys(family.probe for family in last))
-    with canvas(10.4, 5.6, 2, 2, "y") as (drawing, panels):
-        for axes, method, count in zip(panels, convergence_tables.NAMES, ("links", "elements"), strict=True):
-            logarithmic(axes, found.sizes)
-            for family in last:
-                if family.solver == method:
-                    _draw(axes, family, names.index(family.probe))
-            axes.set(title=convergence_tables.NAMES[method], xlabel=f"{count} per beam, N")
-        for axes, series in zip(panels, found.series, strict=True):
-            _triangle(axes, found.sizes, series.order)
-        panels[0].set_ylabel("distance from the limit / the probe's largest value")
-        common_legend(drawing, "right center", 1, 8.5)
-        caption = (
-            f"Distance from the limit at {at_station(found.scene, *last_station(found.scene))}; above it the "
-            "limit's uncertainty, hollow where the uncertainty is larger."
-        )
-        exact = any(family.exact is not None for family in last)
-        caption += " Crosses: distance from the exact value." if exact else ""
-        return (finished(drawing, "convergence", caption),)
+    left, right = found.sizes[:2]
+    low, panels = 0.2 * min(error for family in last for error in _errors(family).values()), list[Panel]()
+    for series in found.series:
+        own = [family for family in last if family.solver == series.method]
+        lines = [line for family in own for line in _lines(family, names.index(family.probe))]
+        high = low * (right / left) ** series.order  # a triangle shows the slope of the order, below all errors
+        lines.append(([left, right, left, left], [high, low, low, high], {"color": GREY, "linewidth": 1.0}))
+        look = {"xytext": (4, -4), "color": GREY, "fontsize": 9.0}
+        texts = [(f"{series.order:g}", (left, (low * high) ** 0.5), look)]
+        ordinate = "" if panels else "distance from the limit / the probe's largest value"
+        panels.append(Panel(ordinate, lines, convergence_tables.NAMES[series.method], texts=texts))
+    caption = (
+        f"Distance from the limit at {at_station(found.scene, *last_station(found.scene))}; above it the "
+        "limit's uncertainty, hollow where the uncertainty is larger."
+    )
+    caption += " Crosses: distance from the exact value." if any(each.exact is not None for each in last) else ""
+    return (
+        chart("convergence", caption, "links or elements per beam, N", panels, panel=(5.2, 4.8), columns=2, shared="y",
+              decades=found.sizes, legend=("right center", 1)),
+    )  # fmt: skip
 
 
 def _errors(family: Family) -> dict[int, float]:
@@ -128,27 +130,18 @@ def _errors(family: Family) -> dict[int, float]:
     return {n: error for n, error in errors.items() if error > _LEAST}
 
 
-def _draw(axes: Axes, family: Family, place: int) -> None:
+def _lines(family: Family, place: int) -> Iterator[Line]:
+    """Errors, their markers and uncertainties, and crosses for true errors."""
     errors, colour = _errors(family), f"C{place % _COLOURS}"
     line, marker = LINES[place // _COLOURS % len(LINES)]
-    axes.plot(list(errors), list(errors.values()), line, color=colour, linewidth=1.1, label=family.probe)
+    yield [*errors], [*errors.values()], {"linestyle": line, "color": colour, "linewidth": 1.1, "label": family.probe}
     unsure = 0.0 if family.found is None else size(family.found.uncertainty) / family.scale
     for n, error in errors.items():
         face = colour if error > unsure else "white"
-        axes.plot([n], [error], marker, color=colour, markersize=4.5, markerfacecolor=face)
-        axes.plot([n, n], [error, error + unsure], color=colour, linewidth=0.7)
+        yield [n], [error], {"marker": marker, "color": colour, "markersize": 4.5, "markerfacecolor": face}
+        yield [n, n], [error, error + unsure], {"color": colour, "linewidth": 0.7}
     true = {n: exact / family.scale for n in errors if (exact := family.true_error(n)) is not None}
-    axes.plot(list(true), list(true.values()), "x", color=colour, markersize=6.5)
-
-
-def _triangle(axes: Axes, sizes: Sequence[int], order: float) -> None:
-    """Draw the slope of an order, low at the left, below all errors."""
-    left, right = sizes[:2]
-    low = 3.0 * axes.get_ylim()[0]
-    high = low * (right / left) ** order
-    axes.plot([left, right, left, left], [high, low, low, high], color=GREY, linewidth=1.0)
-    at = (left, (low * high) ** 0.5)
-    axes.annotate(f"{order:g}", at, textcoords="offset points", xytext=(4, -4), color=GREY, fontsize=9.0)
+    yield [*true], [*true.values()], {"linestyle": "none", "marker": "x", "color": colour, "markersize": 6.5}
 
 
 def _offset_section(question: OffsetQuestion, sizes: tuple[int, ...], construct: OffsetConstruction) -> Section:
@@ -231,12 +224,12 @@ def _offset_table(question: OffsetQuestion, numbers: tuple[int, ...], families: 
 
 
 def _offset_figure(question: OffsetQuestion, numbers: tuple[int, ...], families: list[Family]) -> Figure:
-    with canvas(6.4, 4.2) as (drawing, (axes,)):
-        for place, spacing in enumerate(question.spacings):
-            line, marker = LINES[place % len(LINES)]
-            worst = [_largest(families, spacing, n) for n in numbers]
-            axes.plot(numbers, worst, line, marker=marker, color=f"C{place % 10}", markersize=4.5, label=spacing)
-        logarithmic(axes, numbers)
-        axes.set(xlabel="springs N", ylabel=f"largest error / {question.relative_to}")
-        axes.legend(loc="best")
-        return finished(drawing, "convergence", "Largest error of all offsets against the number of springs.")
+    looks = {spacing: (place, *LINES[place % len(LINES)]) for place, spacing in enumerate(question.spacings)}
+    lines: list[Line] = [
+        (numbers, [_largest(families, spacing, n) for n in numbers],
+         {"linestyle": line, "marker": marker, "color": f"C{place % 10}", "markersize": 4.5, "label": spacing})
+        for spacing, (place, line, marker) in looks.items()
+    ]  # fmt: skip
+    panels = [Panel(f"largest error / {question.relative_to}", lines)]
+    caption = "Largest error of all offsets against the number of springs."
+    return chart("convergence", caption, "springs N", panels, panel=(6.4, 3.4), decades=numbers)

@@ -2,15 +2,14 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from comparisons.formats import at_station, display_unit, distance_text, number, percent, vector, with_unit
 from comparisons.present import json_document
-from comparisons.present.columns import Column, Plain, Table, plain, table_of, without_empty
+from comparisons.present.columns import Column, Plain, Table, columns_of, plain, table_of
 from comparisons.stations import last_station
 from comparisons.studies.families import Convergence, Family, size
 from comparisons.verdict import mechanism
-from cprbm_scene import Scene
 
 NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
@@ -28,6 +27,10 @@ class Pair(NamedTuple):
         if one is None or two is None or one.value.shape != two.value.shape:
             return None
         return size(one.value - two.value), size(one.uncertainty + two.uncertainty)
+
+
+_Apart = tuple[Pair, float, float]
+"""Families with a limit each, the distance of the limits, and their uncertainties."""
 
 
 def pairs_of(families: Iterable[Family]) -> tuple[Pair, ...]:
@@ -135,36 +138,43 @@ def _mechanism(family: Family) -> str:
 
 
 def _limits(found: Convergence) -> Table:
-    scene = found.scene
+    scene, n = found.scene, found.shown
+
+    def unit(own: Family) -> tuple[float, str]:
+        return (1.0, "") if own.found is None else display_unit(scene, own.unit, size(own.found.value))
+
+    def probe(pair: Pair) -> str:
+        place = pair.cprbm.components[0]
+        return pair.cprbm.probe + (f" at {with_unit(scene, place, 'm', 4)}" if isinstance(place, float) else "")
+
+    def limit(solver: Literal["cprbm", "fea"]) -> list[Column[Pair]]:
+        path = f"{solver}.found"
+        return [
+            *columns_of(lambda pair, known: vector(known.value, unit(pair.cprbm)[0]), {f"{NAMES[solver]} limit": path}),
+            *columns_of(lambda pair, known: _share(pair.cprbm, size(known.uncertainty)), {"±": path}),
+        ]
+
+    columns: list[Column[Pair]] = [
+        Column("probe", probe),
+        Column("unit", lambda pair: unit(pair.cprbm)[1]),
+        Column(f"CPRBM at {n}", lambda pair: vector(pair.cprbm.values[n], unit(pair.cprbm)[0])
+               if pair.cprbm.found and n in pair.cprbm.values else None),
+        Column("from its limit", lambda pair: _share(pair.cprbm, pair.cprbm.apart(n))),
+        *limit("cprbm"),
+        *limit("fea"),
+        Column("limits apart", lambda pair: _share(pair.cprbm, pair.apart and pair.apart[0])),
+        Column("CPRBM limit from exact", lambda pair:
+               _share(pair.cprbm, size(pair.cprbm.found.value - pair.cprbm.exact))
+               if pair.cprbm.found and pair.cprbm.exact is not None else None),
+        Column("no limit because", lambda pair: "" if pair.cprbm.found else pair.cprbm.why),
+    ]  # fmt: skip
     note = (
         f"Both solvers in {found.series[0].theory}. Limits by Richardson's extrapolation; fractions of the probe's "
         "largest value in the stage. Stresses at one place."
     )
-    return without_empty(
-        Table(
-            f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}",
-            ("probe", "unit", f"CPRBM at {found.shown}", "from its limit", "CPRBM limit", "±", "FEA limit", "±",
-             "limits apart", "CPRBM limit from exact", "no limit because"),
-            tuple(_limit_row(scene, found.shown, pair) for pair in pairs_of(found.last)),
-            note + (f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""),
-        )
-    )  # fmt: skip
-
-
-def _limit_row(scene: Scene, n: int, pair: Pair) -> tuple[str, ...]:
-    """Cells of a probe: value at N, both limits with their uncertainties, distances, and why there is no limit."""
-    own, place = pair.cprbm, pair.cprbm.components[0]
-    probe = own.probe + (f" at {with_unit(scene, place, 'm', 4)}" if isinstance(place, float) else "")
-    factor, unit = (1.0, "") if own.found is None else display_unit(scene, own.unit, size(own.found.value))
-    value = vector(own.values[n], factor) if own.found and n in own.values else "–"
-    limits = []
-    for family in pair:
-        known = family.found
-        limits += [vector(known.value, factor), _share(own, size(known.uncertainty))] if known else ["–", "–"]
-    off = None if own.found is None or own.exact is None else size(own.found.value - own.exact)
-    apart = _share(own, pair.apart and pair.apart[0])
-    why = "" if own.found else own.why
-    return probe, unit, value, _share(own, own.apart(n)), *limits, apart, _share(own, off), why
+    note += f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""
+    title = f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}"
+    return table_of(title, columns, pairs_of(found.last), note)
 
 
 def _share(family: Family, value: float | None) -> str:
@@ -173,29 +183,37 @@ def _share(family: Family, value: float | None) -> str:
 
 
 def _orders(found: Convergence) -> Table:
-    compared, rows = dict[str, list[tuple[Pair, float, float]]](), []
-    for pair in pairs_of(found.families):
-        if pair.apart is not None and pair.cprbm.why != "the contact is open":  # an open contact has no limit
-            compared.setdefault(pair.cprbm.probe, []).append((pair, *pair.apart))
-    for probe in (probe.name for probe in found.scene.probes if probe.name in compared):
-        pairs = [pair for pair, *_ in compared[probe]]
-        (worst, _), distance, stated = max(compared[probe], key=lambda each: each[1] / (each[0].cprbm.scale or 1.0))
-        shares = [far / each.scale for each, _ in pairs if (far := each.apart(found.shown)) is not None]
-        within = sum(apart <= may for _, apart, may in compared[probe])
-        shown = [spread(order for pair in pairs for order in pair[solver].orders) for solver in (0, 1)]
-        where = at_station(found.scene, worst.stage, worst.station or 0.0)
-        sizes = percent(max(shares, default=None)), _share(worst, distance), _share(worst, stated)
-        rows.append((probe, *shown, *sizes, where, f"{within} of {len(pairs)}"))
-    return without_empty(
-        Table(
-            "Orders and limits over all stations",
-            ("probe", "order CPRBM", "order FEA", f"CPRBM at {found.shown} from its limit", "limits apart", "stated",
-             "at", "within"),
-            tuple(rows),
-            "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
-            "a change that is round-off or turns back has no order. Distances at their worst.",
+    # an open contact has no limit
+    pairs = (pair for pair in pairs_of(found.families) if pair.cprbm.why != "the contact is open")
+    known = [(pair, *pair.apart) for pair in pairs if pair.apart is not None]
+    groups = [[each for each in known if each[0].cprbm.probe == probe.name] for probe in found.scene.probes]
+
+    def worst(mine: Sequence[_Apart]) -> _Apart:
+        return max(mine, key=lambda each: each[1] / (each[0].cprbm.scale or 1.0))
+
+    def order(solver: Literal["cprbm", "fea"]) -> Column[Sequence[_Apart]]:
+        return Column(
+            f"order {NAMES[solver]}",
+            lambda mine: spread(each for pair, *_ in mine for each in getattr(pair, solver).orders),
         )
-    )  # fmt: skip
+
+    columns: list[Column[Sequence[_Apart]]] = [
+        Column("probe", lambda mine: mine[0][0].cprbm.probe),
+        order("cprbm"),
+        order("fea"),
+        Column(f"CPRBM at {found.shown} from its limit", lambda mine: max(
+            (far / own.scale for (own, _), *_ in mine if (far := own.apart(found.shown)) is not None), default=None
+        ), percent),
+        Column("limits apart", worst, lambda each: _share(each[0].cprbm, each[1])),
+        Column("stated", worst, lambda each: _share(each[0].cprbm, each[2])),
+        Column("at", worst, lambda each: at_station(found.scene, each[0].cprbm.stage, each[0].cprbm.station or 0.0)),
+        Column("within", lambda mine: f"{sum(apart <= stated for _, apart, stated in mine)} of {len(mine)}"),
+    ]  # fmt: skip
+    note = (
+        "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
+        "a change that is round-off or turns back has no order. Distances at their worst."
+    )
+    return table_of("Orders and limits over all stations", columns, [mine for mine in groups if mine], note)
 
 
 def spread(orders: Iterable[float | None]) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 
 from comparisons.choices import Kinematics
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, load_unit, probe_scales, unit_of
-from comparisons.stations import ends_at_critical, find_station, last_station, span_of, station_of
+from comparisons.stations import Where, ends_at_critical, find_station, last_station, span_of, station_of, stations_of
 from comparisons.verdict import (
     OWN,
     ROUND_OFF,
@@ -193,17 +193,14 @@ def probe_families(scene: Scene, series: Sequence[Series], exact: Answer | None)
     sizes = sorted({n for each in present for n in each.whole})
     finest = tuple(each.whole[max(each.whole)] for each in present)
     scales = probe_scales(scene, finest)
-    for stage in scene.stages:
-        for value in stage.stations:
-            for probe in scene.probes_in(stage.name):
-                places = _places(scene, probe, stage, value, finest, sizes)
-                for each in present:
-                    yield _of_probe(scene, each, probe, stage, value, places, scales[stage.name, probe.name], exact)
+    for where in stations_of(scene):
+        for probe in scene.probes_in(where[0]):
+            places = _places(scene, probe, where, finest, sizes)
+            for each in present:
+                yield _of_probe(scene, each, probe, where, places, scales[where[0], probe.name], exact)
 
 
-def _places(
-    scene: Scene, probe: Probe, stage: Stage, value: float, finest: Sequence[Answer], sizes: Sequence[int]
-) -> slice:
+def _places(scene: Scene, probe: Probe, where: Where, finest: Sequence[Answer], sizes: Sequence[int]) -> slice:
     """The followed place of a stress; all components of another probe.
 
     The place has the largest stress in the finest answers, of all compared places outside the elements beside a kink of
@@ -212,7 +209,7 @@ def _places(
     """
     if probe.quantity not in STRESSES:
         return slice(None)
-    stations = tuple(station_of(answer, stage.name, value) for answer in finest)
+    stations = tuple(station_of(answer, *where) for answer in finest)
     largest = np.max([np.abs(station.values[probe.name]) for station in stations], axis=0)
     distance = np.abs(np.linspace(0.0, 1.0, probe.points)[:, None] - scene.beams[probe.of].knots[1:-1])
     clear = away_from_point_forces(scene, probe.of, arc_lengths(scene, probe), stations)
@@ -223,16 +220,9 @@ def _places(
 
 
 def _of_probe(
-    scene: Scene,
-    series: Series,
-    probe: Probe,
-    stage: Stage,
-    value: float,
-    places: slice,
-    scale: float,
-    exact: Answer | None,
+    scene: Scene, series: Series, probe: Probe, where: Where, places: slice, scale: float, exact: Answer | None
 ) -> Family:
-    stations = {n: station_of(answer, stage.name, value) for n, answer in series.whole.items()}
+    stations = {n: station_of(answer, *where) for n, answer in series.whole.items()}
     values = {n: station.values[probe.name][places] for n, station in stations.items()}
     last, branch = values[max(values)], stations[max(values)].branch
     is_force = probe.quantity in OPEN_AT_ZERO
@@ -245,6 +235,8 @@ def _of_probe(
         else ""
         for n, own in values.items()
     }
+    known = None if exact is None else find_station(exact, *where)
+    true = np.empty(0) if known is None else known.values.get(probe.name, np.empty(0))[places]
     floor = ROUND_OFF * scale
     used, shown, found, why = _trend(values, obstacles, series.order, 0.0 if is_open else floor)
     components: tuple[Component, ...] = COMPONENTS.get(probe.quantity, (None,))
@@ -254,9 +246,9 @@ def _of_probe(
         solver=series.method,
         settings=series.settings,
         probe=probe.name,
-        stage=stage.name,
-        station=value,
-        unit=unit_of(scene, probe, stage.name),
+        stage=where[0],
+        station=where[1],
+        unit=unit_of(scene, probe, where[0]),
         scale=scale,
         components=components,
         values=values,
@@ -265,17 +257,8 @@ def _of_probe(
         orders=shown,
         found=found,
         why="the contact is open" if is_open else why,
-        exact=_exact_values(exact, stage.name, value, probe.name, places, last),
+        exact=true if true.size and true.shape == last.shape else None,
     )
-
-
-def _exact_values(
-    exact: Answer | None, stage: str, value: float, probe: str, places: slice, like: Array
-) -> Array | None:
-    """Exact values at a station; None without values of the shape of the solvers' values."""
-    station = None if exact is None else find_station(exact, stage, value)
-    found = np.zeros(0) if station is None or probe not in station.values else station.values[probe][places]
-    return found if found.size and found.shape == like.shape else None
 
 
 def critical_families(scene: Scene, series: Sequence[Series]) -> Iterator[Family]:

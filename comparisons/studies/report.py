@@ -8,7 +8,7 @@ added without solving the others again.
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,12 +17,12 @@ from pydantic_core import to_json
 
 from comparisons import cases, provenance
 from comparisons.bench.measures import benchmark_scene, reference
-from comparisons.bench.running import OURS, Plan, Session, contenders, refusal_text
+from comparisons.bench.running import Session, contenders, refusal_text
 from comparisons.bench.section import bench_section, pictures
 from comparisons.choices import Choices
-from comparisons.offset_verdict import Compared
 from comparisons.pairing import Solvers
 from comparisons.present.columns import Plain, Section
+from comparisons.present.offset import Compared
 from comparisons.present.page import (
     Chapter,
     figures_of,
@@ -53,9 +53,9 @@ Content = tuple[Compared, tuple[Section, ...]]
 """The comparison of a question, and further sections: error against N, and run times."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Report:
-    """A report in a folder; the page in the folder shows all finished chapters.
+    """A report in a folder, which keeps the finished chapters; the page in the folder shows these chapters.
 
     Attributes:
         folder: of page and chapters.
@@ -66,7 +66,6 @@ class Report:
         exact: whether the exact reference is asked; with None a rule decides.
         timed: solvers for run times, without kept answers.
         origin: the machine and the versions.
-        table: the paper's Table 1 beside our run times; None before the measurement.
     """
 
     folder: Path
@@ -77,18 +76,23 @@ class Report:
     exact: bool | None
     timed: Solvers
     origin: Mapping[str, str | int]
-    chapters: dict[str, Chapter] = field(default_factory=dict)
-    table: Section | None = None
+
+    @property
+    def chapters(self) -> dict[str, Chapter]:
+        """Kept chapters by name, in the order of the questions."""
+        files = {each.name: (self.folder / each.name / _CHAPTER, self._key(each)) for each in self.questions}
+        kept = {name: _record_of(file, Chapter, key) for name, (file, key) in files.items()}
+        return {name: chapter for name, chapter in kept.items() if chapter is not None}
+
+    @property
+    def table(self) -> Section | None:
+        """The paper's Table 1 beside our run times; None before the measurement, and in a report without the table."""
+        return _record_of(self.folder / _TABLE, Section, self._table_key) if self._has_table else None
 
     def missing(self) -> list[Question]:
-        """Questions without a kept chapter; the kept chapters, and the kept table, are read."""
-        self.table = _record_of(self.folder / _TABLE, Section, self._table_key) if self._has_table else None
-        kept = {
-            each.name: _record_of(self.folder / each.name / _CHAPTER, Chapter, self._key(each))
-            for each in self.questions
-        }
-        self.chapters = {name: chapter for name, chapter in kept.items() if chapter is not None}
-        return [question for question in self.questions if question.name not in self.chapters]
+        """Questions without a kept chapter."""
+        kept = self.chapters
+        return [question for question in self.questions if question.name not in kept]
 
     def _key(self, question: Question) -> str:
         """Digest of the dependence of a chapter: a chapter with other choices or parts is written anew."""
@@ -138,7 +142,6 @@ class Report:
         write(own / "scene.toml", chapter.scene)
         # the last of all files: with it all are there
         write(own / _CHAPTER, to_json((self._key(question), chapter)))
-        self.chapters[question.name] = chapter
         self.put_page()
 
     def add_table(self) -> None:
@@ -151,8 +154,7 @@ class Report:
             measured = table1.session(self.timed, self.origin, REPEAT, AT_MOST).after_all()
             section = replace(table1.result_of(measured), figures=table1.pictures(measured))
             put_section(self.folder, section)
-            self.table = light(section)
-            write(self.folder / _TABLE, to_json((self._table_key, self.table)))
+            write(self.folder / _TABLE, to_json((self._table_key, light(section))))
         self.put_page()
 
     def put_page(self) -> None:
@@ -161,10 +163,8 @@ class Report:
         Raises:
             OSError: the folder cannot be written to.
         """
-        names = [each.name for each in self.questions]
-        self.chapters = {name: self.chapters[name] for name in names if name in self.chapters}
-        tables = () if self.table is None else (self.table,)
-        put_page(self.folder, report_page([*self.chapters.values()], tables, self.origin))
+        page = report_page([*self.chapters.values()], [*filter(None, (self.table,))], self.origin)
+        put_page(self.folder, page)
 
     def document(self) -> Plain:
         """JSON of all chapters: the JSON of ``compare``, with ``convergence`` and ``bench`` as far as known.
@@ -202,9 +202,10 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
         SceneError: every method refuses the question.
     """
     scene = benchmark_scene(scene)
-    plan = Plan(dict.fromkeys(OURS, SIZES), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
-    methods, known = contenders(timed, Choices(kinematics=plan.kinematics)), reference(scene, knowing)
-    measured = Session(scene, plan, methods, provenance.machine(), known).after_all()
+    sizes = dict.fromkeys(contenders(timed, Choices(kinematics="bending")), SIZES)
+    known = reference(scene, knowing)
+    session = Session(scene, provenance.machine(), sizes, known, repeat=REPEAT, at_most=AT_MOST, clock="cpu")
+    measured = session.after_all()
     return replace(bench_section(measured), figures=pictures(measured))
 
 

@@ -10,13 +10,15 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from comparisons import cases
 from comparisons.bench.measures import at_last_loads
-from comparisons.bench.running import Contender, Plan, Run, Session, Timing, outcome_of
+from comparisons.bench.running import Contender, Run, Session, Timing, outcome_of
 from comparisons.choices import Choices, Count
 from comparisons.formats import number
 from comparisons.pairing import Solvers
-from comparisons.present.canvas import BLUE, RED, canvas, finished, name_rows
+from comparisons.present.canvas import BLUE, RED, RULE, canvas, finished, name_rows
 from comparisons.present.columns import Column, Figure, Section, plain, records_of, table_of
 from cprbm_scene import Scene, frozendict
 
@@ -86,12 +88,13 @@ def session(
 ) -> Session:
     """A benchmark session with all cells, each ``repeat`` times; no cell is repeated after ``at_most`` seconds."""
     first = {cell.method: cell.name for cell in reversed(cells)}
-    plan = Plan({cell.name: (cell.size,) for cell in cells}, "shear", repeat, at_most)
     return Session(
         question(cells[0]),
-        plan,
-        tuple(_contender(cell, solvers) for cell in cells),
         machine,
+        {_contender(cell, solvers): (cell.size,) for cell in cells},
+        kinematics="shear",
+        repeat=repeat,
+        at_most=at_most,
         largest={cell.name: math.inf for cell in cells if cell.name not in first.values()},
     )
 
@@ -177,20 +180,17 @@ def result_of(measured: Session, cells: tuple[Cell, ...] = CELLS) -> Section:
 
 def pictures(measured: Session, cells: tuple[Cell, ...] = CELLS) -> tuple[Figure, ...]:
     """Our median times with their quartiles and the paper's, a line for each cell; no figure without a run."""
-    taken = {place: timing for place, timing in enumerate(measured.timings) if timing.seconds}
+    taken = {place: timing.quartiles("both") for place, timing in enumerate(measured.timings) if timing.seconds}
     if not taken:
         return ()
+    low, middle, high = np.array([*taken.values()]).T
+    theirs = {place: cell.theirs for place, cell in enumerate(cells) if cell.theirs is not None}
     with canvas(7.2, 1.2 + 0.26 * len(cells)) as (drawing, (axes,)):
-        for place, timing in taken.items():
-            low, middle, high = timing.quartiles("both")
-            bars = [[middle - low], [high - middle]]
-            axes.errorbar(middle, place, xerr=bars, fmt="o", color=BLUE, markersize=5, capsize=3)
-        theirs = {place: cell.theirs for place, cell in enumerate(cells) if cell.theirs is not None}
-        axes.plot(list(theirs.values()), list(theirs), "x", color=RED, markersize=6, label="the paper's")
-        axes.plot([], [], "o", color=BLUE, label="ours")
-        axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
+        spread = [middle - low, high - middle]
+        axes.errorbar(middle, [*taken], xerr=spread, fmt="o", color=BLUE, markersize=5, capsize=3, label="ours")
+        axes.plot([*theirs.values()], [*theirs], "x", color=RED, markersize=6, label="the paper's")
+        axes.grid(visible=True, which="major", axis="x", color=RULE, linewidth=0.6)
         name_rows(axes, [cell.name for cell in cells])
         axes.set(xscale="log", xlabel="seconds")
-        drawing.legend(loc="outside upper right", ncols=2)
         caption = "Seconds to the last load: ours as medians with the quartiles, and the paper's, on another machine."
-        return (finished(drawing, "table1", caption),)
+        return (finished(drawing, "table1", caption, ("upper right", 2)),)

@@ -10,7 +10,7 @@ import pytest
 
 from comparisons import cases, geometry, provenance
 from comparisons.bench import measures, section
-from comparisons.bench.running import Contender, Outcome, Plan, Run, Session, contenders, sizes_of, trend
+from comparisons.bench.running import CLOCKS, Contender, Outcome, Run, Session, contenders, sizes_of, trend
 from comparisons.bench.section import TARGETS, ratios, seconds_at, standings
 from comparisons.choices import Choices
 from comparisons.cli.main import run
@@ -67,8 +67,9 @@ class Clock:
         return Contender(name, method, formulation, name.upper(), begin, **OF_RATIOS.get(name, {}))
 
     def session(self, sizes=(40, 80, 160), **plan):
-        every = frozendict({one.name: tuple(sizes) for one in self.taking_part})
-        return Session(self.scene, Plan(every, **plan), self.taking_part, MACHINE, KNOWN, clock=self)
+        CLOCKS["wall"] = self
+        sizes = dict.fromkeys(self.taking_part, tuple(sizes))
+        return Session(self.scene, MACHINE, sizes, KNOWN, **plan)
 
     def benchmark(self, sizes=(40, 80, 160), **plan):
         return self.session(sizes, **plan).after_all()
@@ -86,7 +87,8 @@ def power(exponent, setup=0.0, iterations=lambda n: 5, error=lambda n: 1.6 / n**
 
 
 @pytest.fixture
-def bent(hinge):
+def bent(hinge, monkeypatch):
+    monkeypatch.setitem(CLOCKS, "wall", CLOCKS["wall"])  # a made-up clock ends with the test
     return measures.benchmark_scene(hinge)
 
 

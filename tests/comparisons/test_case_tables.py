@@ -10,12 +10,11 @@ from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.offset_verdict import compared_offset
 from comparisons.opinions import contact_model
 from comparisons.pairing import Solvers, paired
 from comparisons.present.brief import brief
 from comparisons.present.case_tables import answer_tables, branch_table, case_sections
-from comparisons.present.offset import error_table
+from comparisons.present.offset import compared_offset, error_table
 from comparisons.present.row_tables import paper_table
 from comparisons.verdict.events import NO_EVENTS
 from cprbm_scene import Ending

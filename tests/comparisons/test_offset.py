@@ -11,9 +11,9 @@ import pytest
 from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.geometry import offset_curve, ordinates
-from comparisons.offset_verdict import compared_offset
 from comparisons.pairing import Solvers, cprbm_offset_points
 from comparisons.present import offset
+from comparisons.present.offset import compared_offset
 from comparisons.verdict import Word
 from cprbm_scene import Arc, OffsetQuestion, SceneError
 from cprbm_scene.reading import offset_from

@@ -143,7 +143,7 @@ def test_contact_forces_sum_to_the_probe_and_press_in_one_place(solved):
     scene, answer, views = solved
     pushes = views[-1].arrows_of("push")
     (stated,) = answer.stations[-1].values["contact.force"]
-    assert [push.on for push in pushes] == ["beam1", "beam2"]
+    assert [push.name for push in pushes] == ["contact", "contact"]  # on both beams
     assert [push.size for push in pushes] == pytest.approx([stated, stated], rel=1e-9)
     assert np.abs(force_block(views[-1]).values["contact_force"].sum(axis=0)).max() < 1e-9 * stated
     assert force_block(views[0]) is None  # the contact is open
@@ -163,7 +163,7 @@ def test_limits_span_the_shown_colours_and_arrows(solved):
 
 def test_a_flat_picture_has_room_for_its_arrows():
     """A level strip of 100 by 2: the arrow from below has 13 % of the length."""
-    push = Arrow("push", "pin", "strip", np.array([[50.0, -1.0]]), np.array([[0.0, 7.0]]))
+    push = Arrow("push", "pin", np.array([[50.0, -1.0]]), np.array([[0.0, 7.0]]))
     bounds = Bounds(np.array([0.0, -1.0]), np.array([100.0, 1.0]), 0.0, 1.0, {"push": 7.0})
     wide = bounds.around([push])
     assert (*wide.low, *wide.high) == pytest.approx((0.0, -14.0, 100.0, 1.0))
@@ -212,7 +212,7 @@ def test_a_curve_needs_two_stations_and_may_go_back(hinge, right):
 def test_a_contact_in_a_point_is_shown_on_a_part_of_its_beam(solved, monkeypatch):
     """The finite elements press over 1e-4 of a beam: the figure shows a twentieth, and no wide zone."""
     scene, answer, _ = solved
-    monkeypatch.setattr(curves, "panels_figure", lambda name, caption, abscissa, panels, **_: panels)
+    monkeypatch.setattr(curves, "chart", lambda name, caption, abscissa, panels, **_: panels)
     where = SimpleNamespace(where=(answer.stations[-1].stage, answer.stations[-1].value))
     compared = SimpleNamespace(scene=scene, rows=[where], runs=SimpleNamespace(pair=(answer, answer)))
     (panels,) = curves.contact_figures(compared)
