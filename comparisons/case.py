@@ -12,7 +12,6 @@ from comparisons.verdict import (
     SEVERITY,
     SOLVERS,
     CriticalRow,
-    Place,
     Reason,
     Row,
     Runs,
@@ -25,12 +24,6 @@ from comparisons.verdict import (
     worst_of,
 )
 from cprbm_scene import Answer, Scene, frozendict
-
-Finding = tuple[Word, Reason | None, str]
-"""Word, reason and sentence."""
-
-Auditor = Callable[[Scene, Answer], Audit]
-"""Function that finds the faults of an answer to a scene."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +104,8 @@ class Comparison:
         return {name: answer.seconds for name, answer in self.runs.answers.items() if name not in left_out}
 
 
-def compare(runs: Runs, look: Auditor = audit) -> Comparison:
-    """The comparison of all ``runs`` of a scene, with the audit ``look``."""
+def compare(runs: Runs, look: Callable[[Scene, Answer], Audit] = audit) -> Comparison:
+    """The comparison of all ``runs`` of a scene, with the function ``look`` for the audits of answers."""
     scene, criticals, rows = runs.scene, critical_rows(runs), judge_rows(runs, rows_of(runs))
     audits = {
         answer.solver: look(scene, replace(answer, stations=tuple(runs.stations[name].values())))
@@ -138,7 +131,7 @@ def _verdict(
     """All findings with their sentences; the worst decides, and its sentence comes first."""
     scene, of_rows = runs.scene, judge_case(runs.scene, rows)
     crossings = next((found.crossings for found in audits.values() if found.crossings), ())
-    findings: list[Finding] = [
+    findings: list[tuple[Word, Reason | None, str]] = [
         *((Word.DIFFER, Reason.EVENTS, said.closing_sentence(scene, closing)) for closing in far_closings(runs)),
         *((*row.judged, said.critical_sentence(runs, row)) for row in criticals),
         *(
@@ -174,9 +167,9 @@ def _branch_verdicts(rows: Sequence[Row]) -> Iterator[BranchVerdict]:
     """Word of every branch, in the order of the path."""
     for branch in dict.fromkeys((row.stage, row.branch) for row in rows if row.branch is not None):
         mine = [row for row in rows if (row.stage, row.branch) == branch]
-        places, word = {row.station: row.place for row in mine}, worst_of(row.word for row in mine)
-        near = sum(place is Place.BETWEEN for place in places.values())
-        yield BranchVerdict(*branch, next(iter(places)), next(reversed(places)), len(places), near, word)
+        between, word = {row.station: row.events.between for row in mine}, worst_of(row.word for row in mine)
+        ends = next(iter(between)), next(reversed(between))
+        yield BranchVerdict(*branch, *ends, len(between), sum(between.values()), word)
 
 
 def _reactions(runs: Runs) -> tuple[WorkEnergyReaction, ...]:

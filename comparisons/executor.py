@@ -13,8 +13,8 @@ import logging
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor, as_completed
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import current_process, get_context, parent_process
@@ -232,26 +232,25 @@ class Crew:
 
     pool: Executor | None = None
 
-    def answers(self, jobs: list[Job]) -> list[Answer]:
+    def answers(self, jobs: list[Job], decided: Decided = lambda *first: False) -> list[Answer]:
         """The answers to jobs, in the order of the jobs.
 
+        Where the answers to the first two jobs are ``decided``, the answers are these two alone, and the other jobs are
+        cancelled.
+
         Raises:
-            SceneError: a solver refuses a job.
-        """
-        return self.begin(jobs)()
-
-    def begin(self, jobs: list[Job], decided: Decided = lambda *first: False) -> Callable[[], list[Answer]]:
-        """A function that waits for the answers to jobs, which the processes begin with now, behind earlier jobs.
-
-        The function returns and raises as :meth:`answers`.  Where the answers to the first two jobs are ``decided``, it
-        returns these two alone, and cancels the other jobs.  Without a pool the work begins with the call.
+            SceneError: a solver refuses a job, which cancels the other jobs.
         """
         if self.pool is None:
-            return lambda: _collected(enumerate(_solve(*job) for job in jobs), len(jobs), decided)
+            return _collected(enumerate(_solve(*job) for job in jobs), len(jobs), decided)
         # The finest runs take longest and stand last: begun right behind the first two jobs, they leave no worker idle.
         places = [*range(len(jobs))[:2], *reversed(range(len(jobs))[2:])]
         futures = {self.pool.submit(call_limited, None, _solve, *jobs[place]): place for place in places}
-        return lambda: _awaited(futures, decided)
+        try:
+            return _collected(((futures[each], each.result()) for each in as_completed(futures)), len(jobs), decided)
+        finally:
+            for future in futures:
+                future.cancel()
 
 
 ALONE = Crew()
@@ -271,15 +270,6 @@ def crew_of(count: int) -> Iterator[Crew]:
         yield Crew(pool)
 
 
-def _awaited(futures: Mapping[Future[_Result], int], decided: Decided) -> list[Answer]:
-    """The answers of processes; the first refusal, and a decision, cancel the other jobs."""
-    try:
-        return _collected(((futures[each], each.result()) for each in as_completed(futures)), len(futures), decided)
-    finally:
-        for future in futures:
-            future.cancel()
-
-
 def _collected(results: Iterable[tuple[int, _Result]], count: int, decided: Decided) -> list[Answer]:
     """The answers in the order of their places, logged as they come."""
     answers: dict[int, Answer] = {}
@@ -287,9 +277,11 @@ def _collected(results: Iterable[tuple[int, _Result]], count: int, decided: Deci
         if isinstance(result, tuple):
             raise SceneError(result)
         answers[place] = result
-        done = {"done": len(answers), "whole": count}
-        report = result.scene, *done.values(), result.solver, result.ending.name, result.seconds
-        _LOG.info("%s: run %d of %d is done: %s, %s after %.2f s", *report, extra=done)
+        _LOG.info(
+            "%s: run %d of %d is done: %s, %s after %.2f s",
+            *(result.scene, len(answers), count, result.solver, result.ending.name, result.seconds),
+            extra={"done": len(answers), "whole": count},
+        )
         if place < 2 and {0, 1} <= answers.keys() and decided(answers[0], answers[1]):
             return [answers[0], answers[1]]
     return [answers[place] for place in range(count)]

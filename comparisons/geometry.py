@@ -37,7 +37,7 @@ from cprbm_scene.curve_records import shape_of
 RigidEdge: TypeAlias = EdgeContact | SplineContact | EllipseContact
 """Contacts with a rigid edge that has places along it."""
 
-_SAMPLES = 1001  # along a beam whose thickness varies
+_SAMPLES = 1001  # along a beam
 _TABLE = 2001  # places u in the table of an offset curve
 _TURNS = 5
 _REACHED = 1e-12  # largest distance from a, over the size of the offset curve
@@ -55,8 +55,6 @@ def longest(scene: Scene) -> float:
 
 def bentness(beam: Beam) -> float:
     """Largest thickness over radius along a beam at rest."""
-    if not beam.tapered:
-        return beam.thickest * shape_of(beam.curve).largest_curvature
     return float(np.max(bentness_on(beam, np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots))))
 
 

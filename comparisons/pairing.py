@@ -35,6 +35,7 @@ from comparisons.choices import Choices, check_counts
 from comparisons.executor import ALONE, Crew, Job, Solver
 from comparisons.formats import in_file_units
 from comparisons.reactions import perturbed_scene
+from comparisons.stations import find_station, stations_of
 from comparisons.verdict import SOLVERS, TWICE, Runs, other_theory, runs_of
 from cprbm_scene import (
     Answer,
@@ -263,36 +264,21 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE,
         bare: whether to leave out all runs outside the theory of the comparison, and perturbed runs.
 
     Raises:
-        SceneError: a solver refuses the question.
-    """
-    return begin(scene, choices, solvers, crew, bare=bare)()
-
-
-def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare: bool = False) -> Callable[[], Runs]:
-    """A function that waits for the runs of a scene, which the crew begins with now.
-
-    Arguments and errors of the function: those of :func:`paired`.
-
-    Raises:
-        SceneError: the choices do not fit the scene.
+        SceneError: the choices do not fit the scene, or a solver refuses the question.
     """
     check_counts(choices, scene)
     theory = choices.kinematics_of(scene)
     choices = choices.within(theory)
     even = replace(choices, formulation="auto")
     jobs = _planned(scene, choices, solvers, bare=bare)
-    pending = crew.begin(list(jobs.values()), partial(_nothing_in_common, scene))
-
-    def ended() -> Runs:
-        found: dict[str, Answer | str] = dict(zip(jobs, pending(), strict=False))  # of decided runs the first two alone
-        if not bare:
-            has_paper = len(found) == len(jobs) and "cprbm auto" not in jobs
-            found |= in_other_theory(scene, even, solvers)
-            found |= in_paper(scene, choices, solvers) if has_paper else {}
-        beside = {f"{name} beside": 1.0 / ratio for name, ratio in zip(SOLVERS, even.ratios_beside(), strict=True)}
-        return runs_of(scene, theory, found, {**beside, **TWICE})
-
-    return ended
+    answers = crew.answers(list(jobs.values()), partial(_nothing_in_common, scene))
+    found: dict[str, Answer | str] = dict(zip(jobs, answers, strict=False))  # of decided runs the first two alone
+    if not bare:
+        has_paper = len(found) == len(jobs) and "cprbm auto" not in jobs
+        found |= in_other_theory(scene, even, solvers)
+        found |= in_paper(scene, choices, solvers) if has_paper else {}
+    beside = {f"{name} beside": 1.0 / ratio for name, ratio in zip(SOLVERS, even.ratios_beside(), strict=True)}
+    return runs_of(scene, theory, found, {**beside, **TWICE})
 
 
 def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) -> dict[str, Job]:
@@ -321,9 +307,8 @@ def _planned(scene: Scene, choices: Choices, solvers: Solvers, *, bare: bool) ->
 
 def _nothing_in_common(scene: Scene, cprbm: Answer, fea: Answer) -> bool:
     """Whether two answers have no station of the scene in common, and neither has a critical value."""
-    asked = {(stage.name, value) for stage in scene.stages for value in stage.stations}
-    reached = [{(station.stage, station.value) for station in answer.stations} for answer in (cprbm, fea)]
-    return not (asked & reached[0] & reached[1]) and not cprbm.critical and not fea.critical
+    shared = any(find_station(cprbm, *where) and find_station(fea, *where) for where in stations_of(scene))
+    return not (shared or cprbm.critical or fea.critical)
 
 
 def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> dict[str, Answer]:

@@ -140,8 +140,6 @@ def problems(scene: Scene, answer: Answer, name: Callable[[str, float], str] = "
             found.extend(f"at {name(stage, value)} {problem}" for problem in _station_problems(scene, station))
         elif answer.completed:
             found.append(f"it has no station {name(stage, value)}")
-        else:
-            break
     if len(answer.stations) > len(asked):
         found.append(f"it has {len(answer.stations)} stations where {len(asked)} were asked")
     return (*found, *_branch_problems(scene, answer, name))
@@ -188,11 +186,10 @@ def _branch_problems(scene: Scene, answer: Answer, name: Callable[[str, float], 
     slack = {stage.name: _ROUND_OFF * span_of(scene, stage) for stage in scene.stages}
     branch = 0
     for station in (each for each in answer.stations if each.stage in values):
-        least, most = sorted((values[station.stage], station.value))
-        least, most = least - slack[station.stage], most + slack[station.stage]
+        (least, most), margin = sorted((values[station.stage], station.value)), slack[station.stage]
         ends = answer.critical[branch : station.branch]
         if len(ends) != station.branch - branch or not all(
-            one.stage == station.stage and least <= one.value <= most for one in ends
+            one.stage == station.stage and least - margin <= one.value <= most + margin for one in ends
         ):
             yield (
                 f"at {name(station.stage, station.value)} it is on branch {station.branch} after branch {branch}, and "

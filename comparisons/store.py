@@ -1,6 +1,6 @@
 """Answers that no run solves twice: in memory, and as compressed files that outlive a killed run.
 
-A file has the name of its key, a digest of the question (:func:`key`) and of the program.  The process that solves also
+A file has the name of its key, a digest of the question and of the program.  The process that solves also
 writes, at once, into ``.unfinished`` of the folder of a run.  A run that comes to its end removes ``.unfinished``.  A
 damaged file is ignored with a note.
 """
@@ -58,46 +58,26 @@ def digest(*parts: str) -> str:
     return sha256("\n".join((*parts, program())).encode()).hexdigest()
 
 
-def key(solver: str, scene: Scene, choices: Choices, own: str = "") -> str:
-    """Digest of all that an answer depends on; the file of the scene is no part.
-
-    Args:
-        solver: name of the solver.
-        scene: the question, with all values of its parameters.
-        choices: how finely, and by which variants.
-        own: name of the function that answers.
-    """
-    return digest(solver, own, scene.model_dump_json(exclude={"file"}), repr(relevant(solver, choices)))
-
-
-def read(path: Path) -> Answer | None:
-    """The answer in a file; None without a file, and with a note where the file is damaged.
-
-    Raises:
-        OSError: the file cannot be read.
-    """
-    try:
-        return read_answers(path)["answer"]
-    except FileNotFoundError:
-        return None
-    except DAMAGES as error:
-        _LOG.warning("%s is damaged (%s); the answer is solved again", path, error)
-        return None
-
-
 def _kept_answer(solver: Solver, name: str, folder: Path, scene: Scene, choices: Choices) -> Answer:
     """The answer of a solver with a ``name``: from a ``folder``, or else solved and written into the folder.
 
+    The name of a file is a digest of all that an answer depends on; the file of the scene is no part.
+
     Raises:
         SceneError: the solver refuses the question.
-        OSError: the answer cannot be kept.
+        OSError: the answer cannot be read or kept.
     """
     own = getattr(solver, "__qualname__", None) or repr(solver)
-    path = folder / f"{key(name, scene, choices, own)}.json.gz"
-    answer = read(path)
-    if answer is None:
-        answer = solver(scene, choices)
-        write(path, packed({"answer": answer}))
+    key = digest(name, own, scene.model_dump_json(exclude={"file"}), repr(relevant(name, choices)))
+    path = folder / f"{key}.json.gz"
+    try:
+        return read_answers(path)["answer"]
+    except FileNotFoundError:
+        pass
+    except DAMAGES as error:
+        _LOG.warning("%s is damaged (%s); the answer is solved again", path, error)
+    answer = solver(scene, choices)
+    write(path, packed({"answer": answer}))
     return answer
 
 
@@ -179,8 +159,8 @@ class AnswerMemory(Crew):
     say: Callable[[str], None] = lambda text: None
     known: dict[Job, Answer] = field(default_factory=dict)
 
-    def answers(self, jobs: list[Job]) -> list[Answer]:
-        """The answers to jobs, in the order of the jobs; only unknown answers are solved.
+    def answers(self, jobs: list[Job], decided: Decided | None = None) -> list[Answer]:
+        """The answers to all jobs, in the order of the jobs; only unknown answers are solved.
 
         Raises:
             SceneError: a solver refuses a job.
@@ -193,18 +173,8 @@ class AnswerMemory(Crew):
             )
             self.say("; ".join(dict.fromkeys(names)))
             # not super(), which a class with slots does not know
-            self.known.update(zip(new, Crew.begin(self, list(new.values()))(), strict=True))
+            self.known.update(zip(new, Crew.answers(self, list(new.values())), strict=True))
         return [self.known[short] for short in known]
-
-    def begin(self, jobs: list[Job], decided: Decided | None = None) -> Callable[[], list[Answer]]:
-        """A function for the answers; all jobs are solved with its call, since the memory grows until then."""
-        return partial(self.answers, jobs)
-
-    def sizes(self, solver: Solver, scene: Scene) -> tuple[int, ...]:
-        """Every number of links or elements at which a solver has answered a scene, ascending."""
-        mine = [choices for own, asked, choices in self.known if own == solver and asked == scene]
-        counts = [choices.links if solver == self.solvers.cprbm else choices.elements for choices in mine]
-        return tuple(sorted({count for count in counts if isinstance(count, int)}))
 
     def _name(self, solver: Solver) -> str:
         return next((name for name in _CHOSEN if getattr(self.solvers, name) == solver), "fea")

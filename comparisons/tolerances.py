@@ -26,7 +26,7 @@ solvers' f; where a solver is asked alone, its own values are.  The solid has an
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -38,7 +38,7 @@ from comparisons.reactions import perturbed_scene
 from comparisons.sentences import problem_sentences
 from comparisons.stations import station_of
 from comparisons.store import AnswerMemory
-from comparisons.verdict import Error, Place, Row, Runs, Uncertainties, error, first_met, limit, rows_of, runs_of
+from comparisons.verdict import Error, Row, Runs, Uncertainties, error, first_met, limit, rows_of, runs_of
 from cprbm_scene import Answer, Array, PointForces, Probe, Scene, SceneError, StationAnswer, frozendict
 from cprbm_scene.answer import frozen_array
 
@@ -102,6 +102,17 @@ class Tolerance:
         """Whether every row is within the tolerance."""
         return self.fraction <= self.asked
 
+    def end(self, most: int) -> str:
+        """Why the search ends at this N, with at most ``most`` for N; empty where the search goes on."""
+        finite, at_most = math.isfinite(self.fraction), self.fraction * (self.n / most) ** HIGHEST_ORDER
+        rules = (
+            (self.met, "the tolerance is met"),
+            (2 * self.n > most, f"N = {most} is the largest N"),
+            (not finite and self.n >= PATIENCE, "no larger N would help"),
+            (finite and self.n >= ENOUGH and at_most > self.asked, f"N = {most}, the largest N, would not do either"),
+        )
+        return first_met(rules, "")
+
     def sentence(self, scene: Scene) -> str:
         """Result with the deciding row, with stations in the units of the scene's file."""
         what = f"{self.n} {'links' if self.solver == 'cprbm' else 'elements'} per beam"
@@ -117,18 +128,10 @@ class Tolerance:
         return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """The finest answer with limits as values.
-
-    Attributes:
-        answer: the answer; coarse: the answer at half the finest N.
-        uncertainties: of all values at which both follow one law.
-        probes: names of the probes with a limit.
-    """
+class Limits(NamedTuple):
+    """The finest answer with limits as values, uncertainties of all values with a law, and the probes with a limit."""
 
     answer: Answer
-    coarse: Answer
     uncertainties: Uncertainties
     probes: tuple[str, ...]
 
@@ -148,6 +151,7 @@ def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
         for name, (_, stated, _) in values.items()
         if stated is not None
     }
+    probes = tuple(probe.name for probe in scene.probes if probe.name in names)
     # limits belong to no state: no forces are in balance with them
     stations = tuple(
         replace(
@@ -159,18 +163,17 @@ def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
         for at, values in found
     )
     answer = replace(fine, stations=stations, seconds=sum(each.seconds for each in answers.values()))
-    if names:
+    if probes:
         answer = replace(
             answer,
             settings=frozendict({**fine.settings, "extrapolated_from": [n // 2, n]}),
             notes=(
                 *fine.notes,
-                f"Extrapolated from N = {n // 2}, {n}: {', '.join(sorted(names))}; all other values, shapes and "
+                f"Extrapolated from N = {n // 2}, {n}: {', '.join(sorted(probes))}; all other values, shapes and "
                 f"certificates are of N = {n}.",
             ),
         )
-    probes = tuple(probe.name for probe in scene.probes if probe.name in names)
-    return Limits(answer, answers[n // 2], frozendict(uncertainties), probes)
+    return Limits(answer, frozendict(uncertainties), probes)
 
 
 def _value(probe: Probe, by_size: Mapping[int, StationAnswer]) -> tuple[Array, Error | None, bool]:
@@ -200,27 +203,21 @@ class _Level:
     """Answers of a solver at N and coarser.
 
     Attributes:
-        answers: by N; answer: at N, with limits as values unless a run ended early.
-        found: result of the search with N as the last number.
+        n: N; answers: by N.
+        answer: at N, with limits as values unless a run ended early.
         limits: of the answers; None in trouble.
     """
 
+    n: int
     answers: Mapping[int, Answer]
     answer: Answer
-    found: Tolerance
-    limits: Limits | None = None
+    limits: Limits | None
 
-    def end(self, most: int) -> str:
-        """Why the search ends at this level, with at most ``most`` for N; empty where the search goes on."""
-        n, fraction = self.found.n, self.found.fraction
-        finite, at_most = math.isfinite(fraction), fraction * (n / most) ** HIGHEST_ORDER
-        rules = (
-            (self.found.met, "the tolerance is met"),
-            (2 * n > most, f"N = {most} is the largest N"),
-            (not finite and n >= PATIENCE, "no larger N would help"),
-            (finite and n >= ENOUGH and at_most > self.found.asked, f"N = {most}, the largest N, would not do either"),
-        )
-        return first_met(rules, "")
+    def runs(self, solver: SolverName) -> dict[str, Answer]:
+        """Runs of a comparison by name: the answer, the answer at N/2, and beside ``paper`` the limits in ``auto``."""
+        assert self.limits is not None
+        even = {} if self.answer is self.limits.answer else {f"{solver} auto": self.limits.answer}
+        return {solver: self.answer, f"{solver} finer": self.answers[self.n // 2], **even}
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,21 +233,21 @@ class _Search:
 
     def run(self) -> tuple[_Level, Tolerance]:
         """The last level of the search, and the result."""
-        n, end = FIRST[self.solver], ""
+        n, solved, end = FIRST[self.solver], set[int](), ""
         while not end:
             n *= 2
             try:
-                level = self.at(n)
+                level, found = self.at(n)
             except SceneError:  # few links may be too few for the joints of a formulation
                 if n >= ENOUGH:
                     raise
                 continue
-            end = level.end(LARGEST_PAPER if self.in_paper else LARGEST[self.solver])
-        sizes = self.memory.sizes(getattr(self.memory.solvers, self.solver), self.scene)
-        return level, replace(level.found, solved=sizes, ended="" if level.found.met else end)
+            solved.update(found.solved)
+            end = found.end(LARGEST_PAPER if self.in_paper else LARGEST[self.solver])
+        return level, replace(found, solved=tuple(sorted(solved)), ended="" if found.met else end)
 
-    def at(self, n: int) -> _Level:
-        """The level of an N.
+    def at(self, n: int) -> tuple[_Level, Tolerance]:
+        """The level of an N, and the result with N as the last number.
 
         Raises:
             SceneError: the solver refuses the question.
@@ -264,15 +261,14 @@ class _Search:
         value = solved.pop() if paper else None
         answers = dict(zip(ordered, solved, strict=True))
         problems = {size: next(iter(problem_sentences(self.scene, each)), "") for size, each in answers.items()}
-        trouble = problems[n // 2] or problems[n]
-        if trouble:
-            found = Tolerance(self.tolerance, self.solver, n, None, math.inf, trouble, ())
-            return _Level(answers, value or answers[n], found)
+        if trouble := problems[n // 2] or problems[n]:
+            found = Tolerance(self.tolerance, self.solver, n, None, math.inf, trouble, (), tuple(ordered))
+            return _Level(n, answers, value or answers[n], None), found
         whole = {size: answer for size, answer in answers.items() if not problems[size]}
         limits = limits_of(self.scene, whole)
-        probes = () if self.in_paper else limits.probes
-        found = Tolerance(self.tolerance, self.solver, n, *self._worst(limits, value), "", probes)
-        return _Level(whole, value or limits.answer, found, limits)
+        level, probes = _Level(n, whole, value or limits.answer, limits), () if self.in_paper else limits.probes
+        worst = self._worst(level, limits)
+        return level, Tolerance(self.tolerance, self.solver, n, *worst, "", probes, tuple(ordered))
 
     def choices_at(self, n: int) -> Choices:
         """The choices at N."""
@@ -283,32 +279,26 @@ class _Search:
         """True for the CPRBM in ``paper``, whose values are never limits."""
         return self.solver == "cprbm" and self.choices.formulation == "paper"
 
-    def _worst(self, limits: Limits, paper: Answer | None) -> tuple[Row | None, float]:
+    def _worst(self, level: _Level, limits: Limits) -> tuple[Row | None, float]:
         """The row with the largest f, and f, of a value in ``paper`` with the distance from ``auto``."""
         reference = self.reference or limits.answer
-        answers = {
-            "cprbm": paper or limits.answer,
-            "cprbm finer": limits.coarse,
-            "fea": reference,
-            "fea finer": reference,
-        }
-        answers |= {} if paper is None else {"cprbm auto": limits.answer}
+        answers = {**level.runs("cprbm"), "fea": reference, "fea finer": reference}
         settled = {"cprbm": limits.uncertainties}
         runs = Runs(self.scene, self.choices.kinematics_of(self.scene), answers, settled=settled)
-        fractions = ((row, _fraction(row, limits)) for row in rows_of(runs))
-        stated = ((row, f) for row, f in fractions if f is not None)
+        pair = limits.answer, level.answers[level.n // 2]
+        stated = ((row, f) for row in rows_of(runs) if (f := _fraction(row, pair)) is not None)
         return max(stated, key=lambda each: each[1], default=(None, 0.0))
 
 
-def _fraction(row: Row, limits: Limits) -> float | None:
-    """f; None without a value and between events, infinite where the value exists at one N and not at another."""
-    if row.place is Place.BETWEEN:
+def _fraction(row: Row, pair: tuple[Answer, Answer]) -> float | None:
+    """f; None without a value and between events, infinite where one answer of a ``pair`` alone has the value."""
+    if row.events.between:
         return None
     if row.bounds is not None:
         return row.fraction(row.bounds.cprbm)
     shapes = {
         station.values[row.probe.name].shape
-        for answer in (limits.answer, limits.coarse)
+        for answer in pair
         for station in answer.stations
         if (station.stage, station.value) == row.where
     }
@@ -359,13 +349,10 @@ def runs_within(
     if cprbm.limits is None or fea.limits is None:
         runs = paired(scene, at_last, replace(solvers, solid=None), memory)
     else:
-        results: dict[str, Answer | str] = {"cprbm": cprbm.answer, "cprbm finer": cprbm.limits.coarse}
-        results |= {"fea": fea.limits.answer, "fea finer": fea.limits.coarse}
-        if of_cprbm.in_paper:
-            results["cprbm auto"] = cprbm.limits.answer
+        results: dict[str, Answer | str] = {**cprbm.runs("cprbm"), **fea.runs("fea")}
         results |= in_other_theory(scene, replace(at_last, links=links.n // 2), solvers)
         if (driven := perturbed_scene(scene)) is not None:
-            results["cprbm perturbed"] = replace(of_cprbm, scene=driven, reference=None).at(links.n).answer
+            results["cprbm perturbed"] = replace(of_cprbm, scene=driven, reference=None).at(links.n)[0].answer
         if solvers.exact and theory == "bending":
             (results["exact"],) = memory.answers([(solvers.exact, scene, of_fea.choices)])
         settled = {"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}

@@ -21,9 +21,6 @@ from comparisons.tolerances import Tolerance, solve_within
 from comparisons.writing import write
 from cprbm_scene import Answer, Scene
 
-Found = tuple[Answer, Audit, tuple[Tolerance, ...]]
-"""An answer, its audit, and the searches for N."""
-
 _ROUNDING = 1e-9
 """Largest distance of a typed station, a share of the station: decimal digits are rounded."""
 
@@ -55,8 +52,10 @@ def _write(
         output.print_tables(case_tables.answer_tables(scene, answer, searches))
 
 
-def _answer_of(request: output.Request, scene: Scene, solver: SolverName) -> Found:
-    """The answer of a solver.
+def _answer_of(
+    request: output.Request, scene: Scene, solver: SolverName
+) -> tuple[Answer, Audit, tuple[Tolerance, ...]]:
+    """The answer of a solver, its audit, and the searches for N.
 
     Raises:
         SceneError: the solver does not support the scene.

@@ -101,11 +101,6 @@ def _end(error: Exception) -> End | None:
             return f"The memory is too small for this model. {_KEPT}; ask for fewer links.", INCOMPLETE
         case OSError():
             return f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.", WRONG_QUESTION
-    return _end_of_words(error) or _end_of_question(error)
-
-
-def _end_of_words(error: Exception) -> End | None:
-    """The end after wrong words on the command line, and after an answered request for help."""
     import click
 
     match error:
@@ -122,11 +117,7 @@ def _end_of_words(error: Exception) -> End | None:
             return f"{text if text.endswith(('.', '?', '!')) else f'{text}.'}{cases}{help_}", WRONG_QUESTION
         case click.ClickException():
             return error.format_message(), WRONG_QUESTION
-    return None
-
-
-def _end_of_question(error: Exception) -> End | None:
-    """The end after a wrong scene, and after the loss of a worker."""
+    # behind wrong words and answered requests for help, which need no numbers
     from concurrent.futures import BrokenExecutor
 
     from comparisons.executor import WorkerDiedError

@@ -152,8 +152,8 @@ MECHANISM = (
         callback=later("many.tolerance"),
         params=[
             CASE,
-            _number_of(["--samples"], type=click.IntRange(16, 65536), default=1024, callback=options.power_of_2,
-                       metavar="N", help="Number of points in a sample, a power of 2."),
+            _number_of(["--samples"], default="1024", callback=options.power_of_2, metavar="N",
+                       help="Number of points in a sample, a power of 2."),
             options.flag(["--sobol"],
                          help="First- and total-order Sobol indices too; N (d + 2) points for d parameters."),
             click.Option(["--limits"], type=options.READ_FILE, metavar="FILE.toml",

@@ -75,6 +75,7 @@ family_sizes = _reader(_several, "two numbers or more, each larger than the one 
                        lambda found: len(found) > 1 and all(a < b for a, b in pairwise(found)))  # fmt: skip
 positive = _reader(float, "a number greater than 0", lambda value: 0.0 < value < math.inf)
 fraction = _reader(float, "a number greater than 0 and less than 1", lambda value: 0.0 < value < 1.0)
+power_of_2 = _reader(int, "a power of 2 from 16 to 65536", lambda value: value in [1 << bits for bits in range(4, 17)])
 tolerance = _reader(_share, "as 0.1% or as 0.001, greater than 0 and less than 1", lambda value: 0.0 < value < 1.0)
 shard = _reader(lambda text: tuple(map(int, text.split("/"))), "I/N with I from 1 to N, as 3/64",
                 lambda found: len(found) == 2 and 1 <= found[0] <= found[1])  # fmt: skip
@@ -87,24 +88,6 @@ drawing = _reader(Path, "a name that ends in .svg or .png", lambda path: path.su
 def numbers(ctx: click.Context, param: click.Parameter, texts: tuple[str, ...]) -> tuple[Any, ...]:
     """A number of links for every text of an option that may be repeated."""
     return tuple(count(ctx, param, text) for text in texts)
-
-
-def place(ctx: click.Context, param: click.Parameter, value: str | None) -> str:
-    """A place of workers."""
-    if value is None:
-        return f"local:{min(2, os.cpu_count() or 1)}"
-    from comparisons.sweeps.workers import PLACES, place_of
-
-    if place_of(value) is None:
-        raise click.BadParameter(f"found {value!r}; allowed: {PLACES}")
-    return value
-
-
-def power_of_2(ctx: click.Context, param: click.Parameter, value: int) -> int:
-    """A power of 2."""
-    if value & (value - 1):
-        raise click.BadParameter(f"found {value}; allowed: a power of 2, as {1 << value.bit_length() - 1}")
-    return value
 
 
 def listen(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
@@ -128,12 +111,11 @@ def candidates(ctx: click.Context, param: click.Parameter, incomplete: str) -> l
 _STANDARD, _THEORIES = Choices(), click.Choice(KINEMATICS)
 FILE = click.Path(dir_okay=False, path_type=Path)
 READ_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-DIRECTORY = click.Path(file_okay=False, path_type=Path)
 
 flag = partial(click.Option, is_flag=True)
 """Option without a value."""
 
-folder = partial(click.Option, ["--out"], type=DIRECTORY, metavar="DIR")
+folder = partial(click.Option, ["--out"], type=click.Path(file_okay=False, path_type=Path), metavar="DIR")
 """Option ``--out DIR``."""
 
 solver = partial(click.Option, ["--solver"], default="cprbm", show_default=True)
@@ -205,7 +187,8 @@ MANY = (
     SET,
     *SIZED,
     *VARIANTS,
-    click.Option(["--on", "place"], callback=place, metavar="local:N|dask://HOST:PORT",
+    click.Option(["--on", "place"], default=lambda: f"local:{min(2, os.cpu_count() or 1)}",
+                 metavar="local:N|dask://HOST:PORT",
                  help="Worker processes, or the scheduler of a Dask cluster.  [default: a process per core, at most "
                  "two]"),
     time_limit(help="Time limit of a solve; a solve that crashes or takes longer is tried twice.", default="600"),

@@ -174,35 +174,30 @@ def print_folder(request: Request, file: str = "index.html") -> None:
 
 @dataclass(slots=True)
 class Bar:
-    """Progress of items, of which an item may have rounds of steps; no bar is drawn by default.
+    """Progress of items, of which an item may have steps; no bar is drawn by default.
 
     Attributes:
         move: draws the bar at a number of finished items.
         clear: clears the line of the bar before other output.
-        share: part of the remaining item that a round of steps takes.
-        item: number of the present item; left: its remaining fraction after the last round; done: its last step.
+        item: number of the present item; part: its finished part.
     """
 
     move: Callable[[float], None] = lambda done: None
     clear: Callable[[], None] = lambda: None
-    share: float = 1.0
     item: int = 0
-    left: float = 1.0
-    done: int = 0
+    part: float = 0.0
 
     def through(self, items: Sequence[T]) -> Iterator[T]:
         """The items in order; the bar moves with every item."""
         for number, item in enumerate(items):
-            self.item, self.left, self.done = number, 1.0, 0
+            self.item, self.part = number, 0.0
             self.move(number)
             yield item
 
     def step(self, done: int, whole: int) -> None:
         """Move to the finished items and the finished part of the present item; the bar never goes back."""
-        if done <= self.done:
-            self.left *= 1.0 - self.share
-        self.done = done
-        self.move(self.item + 1.0 - self.left * (1.0 - self.share * done / whole))
+        self.part = max(self.part, done / whole)
+        self.move(self.item + self.part)
 
 
 def _visible(*, shown: bool) -> bool:
@@ -210,16 +205,13 @@ def _visible(*, shown: bool) -> bool:
 
 
 @contextmanager
-def bar(
-    whole: int, *, shown: bool, loggers: tuple[str, ...] = (logs.RUNS,), share: float = 1.0, noun: str = ""
-) -> Iterator[Bar]:
+def bar(whole: int, *, shown: bool, loggers: tuple[str, ...] = (logs.RUNS,), noun: str = "") -> Iterator[Bar]:
     """Context with a bar for ``whole`` items and the remaining time, if ``shown``.
 
     Args:
         whole: number of items.
         shown: whether the user wants a bar.
         loggers: loggers whose steps move the bar during an item.
-        share: part of the remaining item that a round of steps takes.
         noun: of an item, for "case 3 of 11"; empty without numbers.
     """
     if not _visible(shown=shown):
@@ -253,7 +245,7 @@ def bar(
             progress.console.control(Control(ControlType.CARRIAGE_RETURN, (ControlType.ERASE_IN_LINE, 2)))
 
         move(0)
-        found = Bar(move, clear, share)
+        found = Bar(move, clear)
         with logs.steps_from(loggers, found.step):
             yield found
         clear()

@@ -4,11 +4,11 @@ After every result the page and the JSON file are whole: an interrupted command 
 """
 
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
-from itertools import islice
+from pathlib import Path
 from typing import Literal, TypeVar
 
 import click
@@ -31,7 +31,11 @@ from comparisons.studies.report import Report
 from comparisons.tolerances import runs_within
 from comparisons.verdict import Word
 from comparisons.writing import write
-from cprbm_scene import OffsetQuestion, Question, Scene, frozendict
+from cprbm_scene import OffsetQuestion, Question, frozendict
+
+Result = TypeVar("Result")
+Study = TypeVar("Study")
+Step = TypeVar("Step")
 
 
 def compare_all(request: output.Request) -> int:
@@ -44,19 +48,18 @@ def compare_all(request: output.Request) -> int:
     request = request.with_room("report" if "all" in request.arguments else "")
     # with a tolerance a status line with N replaces the bar
     progress = output.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
-    finished, chapters, documents = list[Compared](), list[page.Chapter](), list[Plain]()
     with _run(request, questions) as run, progress as shown:
-        for compared in _comparisons(request, questions, run, shown):
-            finished.append(compared)
-            documents.append(page.document_of(compared))
-            if request.out is not None:
-                chapters.append(page.put_case(request.out, compared, page.figures_of(compared)))
-            _keep(request, run, questions[: len(finished)], page.report_page(chapters), {"cases": documents})
-            shown.clear()
-            if request.prints:
-                _show(request, compared)
-    if not request.prints:
-        output.write_json(request.json_file, {"cases": documents})
+        finished = _published(
+            request,
+            run,
+            shown,
+            (_compared(request, run, question) for question in shown.through(questions)),
+            document=page.document_of,
+            whole=lambda documents: {"cases": documents},
+            put=lambda folder, compared: page.put_case(folder, compared, page.figures_of(compared)),
+            page_of=page.report_page,
+            show=partial(_show, request),
+        )
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
         output.print_tables([brief.summary(finished)], brief.WIDTH)
@@ -67,36 +70,15 @@ def compare_all(request: output.Request) -> int:
     return code_of(incomplete=incomplete, undecided=undecided)
 
 
-def _comparisons(
-    request: output.Request, questions: Sequence[Question], run: Run, progress: output.Bar
-) -> Iterator[Compared]:
-    """Comparisons of all questions; the next question is solved while the caller draws and prints the last."""
-    begun = map(partial(_begin, request, run), questions)
-    ahead = [*islice(begun, 1)]
-    for _ in progress.through(questions):
-        finish = ahead.pop()
-        ahead += islice(begun, 1)
-        yield finish()
-
-
-def _begin(request: output.Request, run: Run, question: Question) -> Callable[[], Compared]:
-    """A function for the comparison of a question, whose runs begin now.
-
-    With a tolerance, and of an offset question, all work begins with the call.
-    """
+def _compared(request: output.Request, run: Run, question: Question) -> Compared:
+    """The comparison of a question, within the tolerance if the request has any."""
     if isinstance(question, OffsetQuestion):
-        return partial(compared_offset, question, run.solvers.offset)
+        return compared_offset(question, run.solvers.offset)
     if request.tol is not None:
-        return partial(_compared_within, request, run, question, request.tol)
-    pending = pairing.begin(question, request.choices, run.solvers, run.crew)
-    return lambda: case.compare(pending())
-
-
-def _compared_within(request: output.Request, run: Run, scene: Scene, tolerance: float) -> Comparison:
-    """The comparison of a scene with all solvers within a tolerance."""
-    with output.status(shown=not request.quiet) as say:
-        runs, searches = runs_within(scene, request.choices, tolerance, run.solvers, run.crew, say)
-    return replace(case.compare(runs), tolerances=searches)
+        with output.status(shown=not request.quiet) as say:
+            runs, searches = runs_within(question, request.choices, request.tol, run.solvers, run.crew, say)
+        return replace(case.compare(runs), tolerances=searches)
+    return case.compare(pairing.paired(question, request.choices, run.solvers, run.crew))
 
 
 def _run(request: output.Request, questions: Sequence[Question]) -> AbstractContextManager[Run]:
@@ -104,13 +86,44 @@ def _run(request: output.Request, questions: Sequence[Question]) -> AbstractCont
     return run_into(request.out, request.solvers, tuple(each.name for each in questions), request.processes)
 
 
-def _keep(request: output.Request, run: Run, shown: Sequence[Question], whole: page.Page, document: Plain) -> None:
-    """Write the page and the JSON of the questions ``shown``, unless they would replace more; the last one is new."""
-    if run.may_show([question.name for question in shown]):
+def _published(
+    request: output.Request,
+    run: Run,
+    progress: output.Bar,
+    results: Iterable[Result],
+    *,
+    document: Callable[[Result], Plain],
+    whole: Callable[[list[Plain]], Plain],
+    put: Callable[[Path, Result], page.Chapter],
+    page_of: Callable[[Sequence[page.Chapter]], page.Page],
+    show: Callable[[Result], None],
+) -> list[Result]:
+    """All results; page and JSON are whole after every result, unless they would replace more.
+
+    Args:
+        request: of the command; run: into the folder; progress: of the questions.
+        results: of the questions of the run, in order.
+        document: JSON of a result; whole: JSON of all results.
+        put: writes a result into a folder, and returns the chapter; page_of: the page of all chapters.
+        show: prints a result.
+    """
+    finished, chapters, documents = list[Result](), list[page.Chapter](), list[Plain]()
+    for result in results:
+        finished.append(result)
+        documents.append(document(result))
         if request.out is not None:
-            page.put_page(request.out, whole)
+            chapters.append(put(request.out, result))
+        if run.may_show(run.names[: len(finished)]):
+            if request.out is not None:
+                page.put_page(request.out, page_of(chapters))
+            if request.prints:
+                output.write_json(request.json_file, whole(documents))
+        progress.clear()
         if request.prints:
-            output.write_json(request.json_file, document)
+            show(result)
+    if not request.prints:
+        output.write_json(request.json_file, whole(documents))
+    return finished
 
 
 def _show(request: output.Request, compared: Compared) -> None:
@@ -150,27 +163,27 @@ def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
 
-    progress = output.bar(len(questions), shown=not request.quiet, share=0.8)
-    finished, chapters, document = list[Section](), list[page.Chapter](), dict[str, object]()
-    with _run(request, questions) as run, progress as shown:
-        for question in shown.through(questions):
-            section = convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
-            finished.append(section)
-            data = [each.data for each in finished]
-            document = {"cases": data} if len(questions) > 1 else dict(*data)
-            if request.out is not None:
-                page.put_section(page.own_folder(request.out, question.name), section)
-                chapters.append(page.section_chapter(question, [section]))
-            _keep(request, run, questions[: len(finished)], page.Page(*convergence.TITLE, chapters), document)
-            shown.clear()
-            if request.prints:
-                output.print_tables(() if request.quiet else section.tables)
-                for sentence in section.sentences:
-                    click.echo(f"{question.name}: {sentence}")
-    if not request.prints:
-        output.write_json(request.json_file, document)
+    def show(found: tuple[Question, Section]) -> None:
+        question, section = found
+        output.print_tables(() if request.quiet else section.tables)
+        for sentence in section.sentences:
+            click.echo(f"{question.name}: {sentence}")
+
+    with _run(request, questions) as run, output.bar(len(questions), shown=not request.quiet) as shown:
+        choices, solved = request.choices, convergence.convergence_section
+        finished = _published(
+            request,
+            run,
+            shown,
+            ((each, solved(each, sizes, choices, run.solvers, run.crew)) for each in shown.through(questions)),
+            document=lambda found: dict(found[1].data),
+            whole=lambda documents: {"cases": documents} if len(questions) > 1 else documents[0],
+            put=lambda folder, found: page.put_chapter(folder, *found),
+            page_of=partial(page.Page, *convergence.TITLE),
+            show=show,
+        )
     output.print_folder(request)
-    return code_of(incomplete=not all(section.complete for section in finished))
+    return code_of(incomplete=not all(section.complete for _, section in finished))
 
 
 def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
@@ -183,21 +196,13 @@ def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, 
     found = Report(request.out, questions, *parts, request.solvers, provenance.page_origin())
     missing = found.missing()
     with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
-        begun = map(partial(_begin, request, run), missing)
-        ahead = [*islice(begun, 1)]
         for question in progress.through(missing):
-            content = found.content_of(question, ahead.pop(), run)
-            ahead += islice(begun, 1)  # solved during the drawings, but not during the measurement of run times
-            found.add(question, *content)
+            found.add(question, *found.content_of(question, partial(_compared, request, run, question), run))
         found.add_table()
     output.write_json(request.json_file, found.document() if request.json_file else {})
     for chapter in found.chapters.values() if request.prints else ():
         click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
     output.print_folder(request)
-
-
-Study = TypeVar("Study")
-Step = TypeVar("Step")
 
 
 def bench(

@@ -27,7 +27,7 @@ from comparisons.quantities import load_unit, norm, probe_scales, unit_of
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, WorkEnergyReaction, by_drive, is_long
 from comparisons.stations import kept
 from comparisons.tolerances import Tolerance
-from comparisons.verdict import ROUND_OFF, CriticalRow, Place, mechanism, other_theory, released
+from comparisons.verdict import ROUND_OFF, CriticalRow, mechanism, other_theory, released
 from cprbm_scene import Answer, Critical, Event, Scene, Stage
 
 CRITICAL_TITLE = "Critical values: where a branch ends"
@@ -157,7 +157,7 @@ def branch_table(compared: Comparison) -> Table:
     columns = [
         Column[BranchVerdict](
             "branch",
-            lambda at: f"{at.stage}, {Place.BETWEEN.value if at.number == _BETWEEN else f'branch {at.number}'}",
+            lambda at: f"{at.stage}, {'between events' if at.number == _BETWEEN else f'branch {at.number}'}",
         ),
         Column("stations", span),
         Column("compared", lambda at: at.stations - at.near),

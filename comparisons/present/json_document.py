@@ -170,7 +170,7 @@ def _row(compared: Comparison, row: Row) -> Plain:
         "stage": row.stage,
         "station": row.station,
         "branch": row.branch,
-        "place": row.place.value,
+        "place": "between events" if row.events.between else "compared",
         "unit": row.unit,
         "cprbm": values(row.probe, row.cprbm),
         "fea": values(row.probe, row.fea),

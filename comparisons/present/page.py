@@ -240,6 +240,16 @@ def put_case(folder: Path, compared: Compared, figures: Sequence[Figure], furthe
     return case_chapter(compared, figures, further)
 
 
+def put_chapter(folder: Path, question: Question, section: Section) -> Chapter:
+    """The chapter of a question with a single section, written into the question's folder in the folder of a report.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    put_section(own_folder(folder, question.name), section)
+    return section_chapter(question, [section])
+
+
 def put_section(folder: Path, section: Section) -> None:
     """Write the JSON file and the figures of a section into a folder.
 

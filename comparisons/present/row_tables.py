@@ -14,7 +14,6 @@ from comparisons.verdict import (
     EXACT_FACTOR,
     ROUND_OFF,
     SOLVERS,
-    Place,
     Row,
     error_ratios,
     other_theory,
@@ -75,7 +74,7 @@ def share(row: Row, size: float, digits: int = 3) -> str | None:
 def judgement(row: Row) -> str:
     """Word and reason of a row, or the cause why the row takes no part."""
     if row.word is None:
-        return "takes no part" if row.place is Place.COMPARED else row.place.value
+        return "between events" if row.events.between else "takes no part"
     return row.word.value if row.reason is None else f"{row.word.value} ({row.reason.value})"
 
 

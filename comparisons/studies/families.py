@@ -131,7 +131,7 @@ class Family:
         """Distances (k,) within which the values at N lie from the true limit."""
         if self.found is None or n not in self.used:
             return None
-        return np.asarray(self.found.errors(self.values[n][None, :])[0])
+        return np.asarray(np.abs(self.values[n] - self.found.value) + self.found.uncertainty)
 
     def apart(self, n: int) -> float | None:
         """Norm of the distance of the values at N from the limit."""

@@ -135,15 +135,14 @@ class Bound:
     least: float
     most: float
 
-    @property
-    def scale(self) -> float:
-        """Largest magnitude of the finite ends, 1 without such a magnitude."""
-        return max(abs(end) for end in (self.least, self.most) if isfinite(end)) or 1.0
-
     def excess(self, outcome: Outcome) -> float:
-        """Largest distance beyond the limit over the scale, negative within the limit; infinite without a value."""
+        """Largest distance beyond the limit over the scale, negative within the limit; infinite without a value.
+
+        The scale is the largest magnitude of the finite ends, 1 without such a magnitude.
+        """
         values = self.measure.values(outcome) if outcome.completed else []
-        return max((max(self.least - each, each - self.most) / self.scale for each in values), default=inf)
+        scale = max(abs(end) for end in (self.least, self.most) if isfinite(end)) or 1.0
+        return max((max(self.least - each, each - self.most) / scale for each in values), default=inf)
 
     def __str__(self) -> str:
         parts = [f"at least {self.measure.text(self.least)}"] if self.least > -inf else []

@@ -76,24 +76,22 @@ class Problem:
         """Values of the parameters, SI, at shares ``u`` (d,) of the ranges."""
         return {axis.name: float(axis.low + x * (axis.high - axis.low)) for axis, x in zip(self.axes, u, strict=True)}
 
-    def outcome(self, runner: Runner, point: Point, asked: Asked = "cprbm", *, finer: bool = False) -> Outcome:
+    def outcome(self, runner: Runner, point: Point, asked: Asked = "cprbm") -> Outcome:
         """The outcome at a point; an invalid scene is an outcome too.
 
         Args:
             runner: solver of the point.
             point: values of the parameters, SI.
             asked: solver, or the comparison of both solvers.
-            finer: whether to double the numbers of links and elements.
 
         Raises:
             OSError: the journal cannot be written.
         """
-        choices = runner.choices.finer() if finer else runner.choices
         try:
-            (task,) = tasks_of(self.scene, [point], asked, frozenset(), choices)
+            (task,) = tasks_of(self.scene, [point], asked, frozenset(), runner.choices)
         except SceneError as error:
             return Outcome(asked, "REFUSED", "; ".join(map(str, error.mistakes)))
-        return replace(runner, choices=choices).outcomes([task])[task.key]
+        return runner.outcomes([task])[task.key]
 
     def starts(self, count: int) -> list[Array]:
         """Shares (d,) of ``count`` starts: the values of the file, and Sobol points."""
@@ -199,7 +197,8 @@ def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum
         found = list(pool.map(partial(_end, problem, runner, scale, most), problem.starts(starts)))
     found.sort(key=lambda each: (not each.feasible, problem.cost(each.number) if each.feasible else 0.0))
     best = found[0].point
-    checks = problem.outcome(runner, best, finer=True), problem.outcome(runner, best, "compare")
+    doubled = replace(runner, choices=runner.choices.finer())
+    checks = problem.outcome(doubled, best), problem.outcome(runner, best, "compare")
     return Optimum(problem, tuple(found), *checks)
 
 
@@ -309,7 +308,7 @@ def _data(found: Optimum) -> Plain:
         {"start": each.begun, "end": each.point, "value": each.number, "met": each.feasible, "solves": each.solves}
         for each in found.ends
     ]
-    data: Plain = plain({
+    return dict(plain({
         "scene": problem.scene.name,
         "optimum": not found.doubt,
         "doubt": found.doubt,
@@ -318,5 +317,4 @@ def _data(found: Optimum) -> Plain:
         "goal": goal,
         "starts": starts,
         "checked": {name: _checked(found, each) for name, each in _numbers(problem).items()},
-    })  # fmt: skip
-    return data
+    }))  # fmt: skip

@@ -352,12 +352,11 @@ def _data(scatter: Scatter, scattering: Sequence[Measure], found: dict[Measure, 
         }
         for measure in scattering
     ]
-    data: Plain = plain({
+    return dict(plain({
         "scene": scatter.sweep.scene.name,
         "points": len(scatter.sample),
         "parameters": [axis.name for axis in scatter.sweep.axes],
         "shares": _shares(scatter),
         "levels": LEVELS,
         "numbers": numbers,
-    })  # fmt: skip
-    return data
+    }))  # fmt: skip

@@ -33,9 +33,6 @@ CONNECT = 10.0
 ARRIVE = 60.0
 """Longest wait for the first worker of a scheduler, s."""
 
-PLACES = "local:N with N processes, as local:2, or dask://HOST:PORT with the address of a scheduler"
-"""Allowed places of workers."""
-
 _PLACE = re.compile(r"(?:local:(?P<count>[1-9]\d{0,2})|dask://(?P<scheduler>[^\s/:]+:\d{1,5}))")
 
 
@@ -57,12 +54,6 @@ class Workers(NamedTuple):
     lost: tuple[type[Exception], ...] = ()
 
 
-def place_of(text: str) -> tuple[int, str] | None:
-    """Number of local processes and address of a scheduler in ``local:N`` or ``dask://HOST:PORT``; None otherwise."""
-    found = _PLACE.fullmatch(text)
-    return None if found is None else (int(found["count"] or 0), found["scheduler"] or "")
-
-
 @contextmanager
 def workers_on(place: str) -> Iterator[Workers]:
     """Workers at ``local:N`` or ``dask://HOST:PORT``; local processes end with the context.
@@ -72,15 +63,15 @@ def workers_on(place: str) -> Iterator[Workers]:
         BrokenExecutor: the scheduler ended during the sweep.
         ImportError: Dask is not installed.
     """
-    found = place_of(place)
+    found = _PLACE.fullmatch(place)
     if found is None:
-        raise SceneError([Mistake("--on", repr(place), PLACES)])
-    count, scheduler = found
-    if count:
-        with threads(count) as pool:
+        allowed = "local:N with N processes, as local:2, or dask://HOST:PORT with the address of a scheduler"
+        raise SceneError([Mistake("--on", repr(place), allowed)])
+    if found["count"]:
+        with threads(int(found["count"])) as pool:
             yield Workers(pool)
     else:
-        with _cluster(scheduler) as workers:
+        with _cluster(found["scheduler"]) as workers:
             yield workers
 
 
@@ -98,7 +89,6 @@ def _cluster(scheduler: str) -> Iterator[Workers]:
     with client, client.get_executor(pure=False) as pool:
         try:
             client.wait_for_workers(1, timeout=ARRIVE)
-            client.run(_see_version, program())
             yield Workers(_OnCluster(pool), lambda: PER_THREAD * sum(client.nthreads().values()), (KilledWorker,))
         except TimeoutError:
             raise refused(f"no worker after {ARRIVE:g} s", "a scheduler with workers") from None

@@ -34,7 +34,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from enum import Enum
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -249,30 +248,23 @@ def _on_load_axis(runs: Runs, loads: Mapping[str, float], round_off: float) -> B
     return runs.bounds(values, lambda difference: float(np.abs(difference).max()), round_off)
 
 
-class Place(Enum):
-    """Whether all runs have passed the same critical points at a station."""
-
-    COMPARED = "compared"
-    BETWEEN = "between events"
-
-
 @dataclass(frozen=True, slots=True)
 class StationEvents:
     """Events of all runs by a station.
 
     Attributes:
         branch: number of critical points before; None where the runs have met different numbers.
-        place: whether rows are compared here.
+        between: whether the runs have met different critical points, so that no rows are compared here.
         unsettled, contradictory: contacts and other parts of the state, as the module says.
     """
 
     branch: int | None
-    place: Place
+    between: bool = False
     unsettled: frozenset[str] = frozenset()
     contradictory: frozenset[str] = frozenset()
 
 
-NO_EVENTS = StationEvents(0, Place.COMPARED)
+NO_EVENTS = StationEvents(0)
 
 
 def station_events(runs: Runs) -> dict[Where, StationEvents]:
@@ -335,7 +327,7 @@ def _events(runs: Runs, stage: Stage, where: Where, states: Mapping[str, Mapping
     is_between = bool(between) or is_near(one for answer in runs.pair for one in answer.critical)
     return StationEvents(
         None if BRANCH in between else here[SOLVERS[0]][BRANCH],
-        Place.BETWEEN if is_between else Place.COMPARED,
+        is_between,
         frozenset(unsettled),
         frozenset(contradictory - unsettled),
     )

@@ -41,7 +41,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.stations import ABSENT_WHILE_OPEN
-from comparisons.verdict.events import MIRRORED, PASSED, Place
+from comparisons.verdict.events import MIRRORED, PASSED
 from comparisons.verdict.rows import ROUND_OFF, Row
 from comparisons.verdict.runs import SOLVERS, Runs, Solver
 from comparisons.verdict.words import Reason, Word, first_met
@@ -64,7 +64,7 @@ def judge_rows(runs: Runs, rows: Sequence[Row]) -> tuple[Row, ...]:
 def _judge(runs: Runs, row: Row, *, faint: bool) -> Judged:
     """Word and reason of a row; ``faint`` tells that a contact in one solver only has no notable effect."""
     scene, bounds = runs.scene, row.bounds
-    if row.place is Place.BETWEEN:
+    if row.events.between:
         return None, None
     if row.absent or (row.exact is not None and row.exact.shape != row.fea.shape):
         return _without_value(scene, row)

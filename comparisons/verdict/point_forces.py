@@ -67,11 +67,9 @@ def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str
         stations: one station of several answers.
         source: name of a contact, or of a point that a beam is joined to.
     """
-    beams = [name for name, beam in scene.beams.items() if source in _joints(beam)]
-    if source in scene.contacts:
-        beams = list(scene.contacts[source].beams)
-    every = tuple(stations)
-    for beam in dict.fromkeys(beams):
+    contact, every = scene.contacts.get(source), tuple(stations)
+    joined = (name for name, beam in scene.beams.items() if source in _joints(beam))
+    for beam in dict.fromkeys(contact.beams if contact else joined):
         others = {other for station in every for other in _neighbours(scene, station, source, beam)}
         if others:
             return beam, frozenset(others)

@@ -23,10 +23,10 @@ import numpy as np
 
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, denominator, norm, probe_scales, unit_of
 from comparisons.stations import Where, complete_stations
-from comparisons.verdict.events import NO_EVENTS, Place, StationEvents, station_events
+from comparisons.verdict.events import NO_EVENTS, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
 from comparisons.verdict.runs import Bounds, Runs
-from comparisons.verdict.uncertainty import largest
+from comparisons.verdict.uncertainty import Error, largest
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import STRESSES, Array, Flags, Probe, Quantity, Scene, StationAnswer
 
@@ -109,11 +109,6 @@ class Row:
     word: Word | None = None
     reason: Reason | None = None
     third: Third | None = None
-
-    @property
-    def place(self) -> Place:
-        """Whether all runs have passed the same events."""
-        return self.events.place
 
     @property
     def branch(self) -> int | None:
@@ -220,13 +215,13 @@ def _measured(
     if row.other is not None and row.other.shape == row.fea.shape:
         even = "cprbm finer" if "cprbm" in runs.settled else "cprbm auto"  # settled values have the answer at N there
         row = replace(row, theory=size(row.other - values.get(even, row.cprbm)))
-    if row.place is Place.BETWEEN:
+    if row.events.between:
         return row
     is_open = probe.quantity in OPEN_AT_ZERO and not any(value.any() for value in values.values())
     floor = 0.0 if is_open else ROUND_OFF * row.scale
     key = (row.stage, row.station, probe.name)
-    known = {name: each[key] for name, each in runs.settled.items() if key in each}
-    known = {name: each.of(counts) for name, each in known.items()}
+    settled = {name: each[key] for name, each in runs.settled.items() if key in each}
+    known = {name: Error(each.even[counts], each.uneven[counts]) for name, each in settled.items()}
     masked = {name: value[counts] for name, value in values.items()}
     return replace(
         row,

@@ -57,11 +57,11 @@ order 1, since an order below 2 leaves L short of the limit.
 import math
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Self, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
-from cprbm_scene import Array, Flags
+from cprbm_scene import Array
 
 SAFETY = 1.25
 STANDARD = 2.0
@@ -98,10 +98,6 @@ class Error:
     even: Array
     uneven: Array
 
-    def of(self, counts: Flags) -> Self:
-        """The part of the components (k,) that count."""
-        return type(self)(self.even[counts], self.uneven[counts])
-
 
 @dataclass(frozen=True, slots=True)
 class Limit:
@@ -120,10 +116,6 @@ class Limit:
     assumed: float
     order: float | None
     why: str
-
-    def errors(self, values: Array) -> Array:
-        """Distances (m, k) within which ``values`` (m, k) lie from the true limit: |v − L| + U."""
-        return np.asarray(np.abs(values - self.value) + self.uncertainty)
 
 
 def error(sizes: Sequence[float], values: Sequence[Array], at: int = 0, order: float = OWN) -> Error:
@@ -159,7 +151,7 @@ def limit(sizes: Sequence[float], values: Values, order: float = OWN, floor: flo
 
     Raises:
         ValueError: fewer than two sizes, sizes that do not ascend, another number of values, a value that is not
-            finite, or an order that is not positive.
+            finite.
     """
     n, v = _checked(sizes[-GRIDS:], values[-GRIDS:])
     p, q, why = _assumed(n, v, order, floor)
@@ -193,11 +185,9 @@ def observed(sizes: Sequence[float] | Array, values: Values, floor: float = 0.0)
     The arguments are those of :func:`limit`.
 
     Raises:
-        ValueError: as :func:`limit`, or not three sizes.
+        ValueError: as :func:`limit`.
     """
     n, v = _checked(sizes, values)
-    if len(n) != 3:
-        raise ValueError(f"{len(n)} sizes; three show an order")
     first, second = np.diff(v, axis=0)
     if min(np.linalg.norm(first), np.linalg.norm(second)) <= floor:
         return None, _ROUND_OFF
@@ -226,8 +216,6 @@ def _fall(n: Array, v: Array) -> float:
 
 def _assumed(n: Array, v: Array, order: float, floor: float) -> tuple[float, float | None, str]:
     """p, q and the reason of a missing q."""
-    if not order > 0.0:
-        raise ValueError(f"an order of {order:g}; it must be positive")
     if len(n) < 3:
         return min(order, STANDARD), None, "two sizes show no order"
     three = sorted((_third(n), _coarse(n), len(n) - 1))

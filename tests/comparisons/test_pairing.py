@@ -12,11 +12,10 @@ import pytest
 from comparisons import cases
 from comparisons.case import compare
 from comparisons.choices import Choices
-from comparisons.executor import ALONE, WorkerDiedError, crew_of
+from comparisons.executor import WorkerDiedError, crew_of
 from comparisons.pairing import (
     EXACT_LIMIT,
     Solvers,
-    begin,
     cprbm_answer,
     exact_by_rule,
     exact_if_covered,
@@ -217,31 +216,11 @@ def test_two_processes_give_the_answers_of_one(hinge, right, monkeypatch, semaph
             }
 
 
-def test_one_case_can_be_begun_before_another_has_ended(hinge, right):
-    """Whichever is waited for first, each gets its own answers; what is refused leaves the other as it is."""
-    wrapped = cases.opened("wrapped")
+def test_a_refusal_leaves_the_processes_to_the_next_question(hinge, right):
     with crew_of(2) as crew:
-        first, second = (begin(scene, Choices(), right, crew) for scene in (hinge, wrapped))
-        refused = begin(hinge, Choices(), Solvers(Refusing(), right.fea), crew)
-        last = begin(wrapped, Choices(), right, crew)
-        assert second().answers["fea"].scene == "wrapped"
-        assert first().answers["fea"].scene == "hinge"
         with pytest.raises(SceneError):
-            refused()
-        assert last().answers["fea"].scene == "wrapped"
-
-
-def test_without_processes_nothing_is_done_before_it_is_waited_for(hinge, right):
-    asked = []
-
-    def noting(scene, choices):
-        asked.append(choices)
-        return right.cprbm(scene, choices)
-
-    pending = begin(hinge, Choices(), Solvers(noting, right.fea), ALONE)
-    assert asked == []
-    pending()
-    assert len(asked) > 2
+            paired(hinge, Choices(), Solvers(Refusing(), right.fea), crew)
+        assert paired(cases.opened("wrapped"), Choices(), right, crew).answers["fea"].scene == "wrapped"
 
 
 def killed(scene, choices):

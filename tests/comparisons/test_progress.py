@@ -114,13 +114,10 @@ def test_steps_are_heard_from_those_alone_who_are_listened_to():
     assert heard == [(3, 7)]
 
 
-@given(
-    st.lists(st.lists(st.integers(1, 9), min_size=1, max_size=4), min_size=1, max_size=4),
-    st.floats(min_value=0.1, max_value=1.0),
-)
-def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items, share):
+@given(st.lists(st.lists(st.integers(1, 9), min_size=1, max_size=4), min_size=1, max_size=4))
+def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items):
     moves, before = [], 0.0
-    shown = Bar(moves.append, share=share)
+    shown = Bar(moves.append)
     for place, each in enumerate(shown.through(items)):
         assert moves[-1] == place
         for whole in each:
@@ -128,7 +125,7 @@ def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(
                 shown.step(done, whole)
                 assert before - 1e-12 <= moves[-1] <= place + 1.0
                 before = moves[-1]
-    assert share < 1.0 or before == len(items)
+    assert before == len(items)
 
 
 def test_one_round_goes_evenly_to_the_end():

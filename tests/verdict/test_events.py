@@ -13,7 +13,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.stations import begins_at, event_tolerance, span_of
 from comparisons.verdict import Word
-from comparisons.verdict.events import Place, critical_rows
+from comparisons.verdict.events import critical_rows
 from comparisons.verdict.runs import Runs
 from cprbm_scene import Answer, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict
@@ -36,7 +36,7 @@ def forward(crank):
 
 def between(comparison):
     """Stages and stations, in degrees, between events."""
-    rows = (row for row in comparison.rows if row.place is Place.BETWEEN)
+    rows = (row for row in comparison.rows if row.events.between)
     return list(dict.fromkeys((row.stage, round(degrees(row.station))) for row in rows))
 
 
@@ -192,7 +192,7 @@ def test_rows_are_compared_branch_by_branch(crank):
     assert ends == [(0, 70), (72, 90), (89, 27), (25, 1)]
     nearer = compared(crank, replace(C, late=radians(-0.2)), replace(F, late=radians(-0.2)))
     assert (between(found), between(nearer)) == ([("back", 25)], [("forward", 70)])
-    assert all(row.bounds is None for row in nearer.rows if row.place is Place.BETWEEN)
+    assert all(row.bounds is None for row in nearer.rows if row.events.between)
 
 
 def test_stations_between_the_critical_angles_take_no_part(crank):

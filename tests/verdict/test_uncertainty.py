@@ -214,7 +214,7 @@ def test_the_error_of_each_size_counts_the_limits_own():
     values = powers(2.0, (10, 20))
     found = limit((10, 20), values)
     own = S * 2 / 3 * 7.0 * (1 / 100 - 1 / 400)
-    assert found.errors(values.reshape(2, 1))[:, 0] == pytest.approx(7.0 / np.array([100.0, 400.0]) + own)
+    assert np.abs(values - found.value) + found.uncertainty == pytest.approx(7.0 / np.array([100.0, 400.0]) + own)
 
 
 @pytest.mark.parametrize(
@@ -224,11 +224,10 @@ def test_the_error_of_each_size_counts_the_limits_own():
         ((20, 10), [1.0, 2.0], 2.0),
         ((10, 20), [1.0, math.nan], 2.0),
         ((10, 20), [1.0], 2.0),
-        ((10, 20), [1.0, 2.0], 0.0),
     ],
 )
-def test_wrong_sizes_values_and_orders_are_refused(sizes, values, order):
-    with pytest.raises(ValueError, match=r"sizes|values|order"):
+def test_wrong_sizes_and_values_are_refused(sizes, values, order):
+    with pytest.raises(ValueError, match=r"sizes|values"):
         limit(sizes, np.array(values), order)
-    with pytest.raises(ValueError, match=r"sizes|values|order"):
+    with pytest.raises(ValueError, match=r"sizes|values"):
         error(sizes, np.reshape(values, (-1, 1)), 0, order)
