@@ -205,6 +205,11 @@ class March:
             for contact in self.system.touches
         )
 
+    @property
+    def largest_axial_force(self) -> float:
+        """Largest axial force."""
+        return float(np.abs(self.system.z[self.model.element_dofs[6]]).max())
+
     def saved(self) -> March:
         """Copy of the state, for :meth:`restore`."""
         return replace(

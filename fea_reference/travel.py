@@ -178,8 +178,7 @@ def _step_to(march: March, course: Course, target: float, *, watched: bool) -> b
             pulls = [
                 previous for previous in pulls if (march.values[load] - previous[0]) * (target - previous[0]) > 0.0
             ]
-            largest = float(np.abs(march.system.z[march.model.element_dofs[6]]).max())
-            pulls.append((float(march.values[load]), largest))
+            pulls.append((float(march.values[load]), march.largest_axial_force))
         watching = watched or failed >= _CUTS_BEFORE_WATCHING
         if abs(march.values[load] - last_progress[0]) >= _PROGRESS * course.span:
             last_progress, search_done = (march.values[load], march.iterations), False
