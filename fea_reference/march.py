@@ -1047,6 +1047,6 @@ def _straight(before: float, beyond: float) -> float:
 
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """Initial state of load stepping: undeformed and unloaded."""
-    values = np.zeros(len(model.stepped))
-    system = assemble(model, {}, settings.quadrature, values, model.start, model.initial_constraints)
-    return March(model, settings, list(contacts), values, system, model.initial_constraints)
+    values, acting = np.zeros(len(model.stepped)), model.initial_constraints
+    system = assemble(model, {}, settings.quadrature, values, model.start, acting)
+    return March(model, settings, list(contacts), values, system, acting)

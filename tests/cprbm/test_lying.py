@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm_scene import scene_from
-from tests.cprbm.scenes import drives_of
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, drives_of
 from tests.references.lying import Lying, Strip
 
 # elements of one length where B has four for every five of A
@@ -189,39 +189,15 @@ def test_no_load_falls_between_a_point_and_a_length(load):
 @pytest.mark.parametrize("links", [40, 80])
 def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
     # reference: a length a is free, with the deflection h = q a⁴/24 EI and the force q a/2 at the end (small slopes)
-    length, thickness, width, q, heights = 1.0, 0.5e-3, 0.02, 0.77, np.array([2e-3, 10e-3])
+    q, heights = 18.5 * RIGIDITY / LENGTH**3, np.array([0.002, 0.01]) * LENGTH
+    floor = {"kind": "beam-half-plane", "beam": "beam", "body": "wall"}
     scene = scene_from(
         {
-            "name": "lifted",
-            "theory": "bending",
-            "materials": {"m": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
-            "bodies": {
-                "floor": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
-                "tip": {"motion": "free", "points": {"T": [length, 0.0]}},
-            },
-            "beams": {
-                "strip": {
-                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [length, 0.0]},
-                    "thickness": thickness,
-                    "width": width,
-                    "material": "m",
-                    "start": {"joint": "weld", "point": "A"},
-                    "end": {"joint": "weld", "point": "T"},
-                }
-            },
-            "loads": {"q": {"kind": "distributed", "beam": "strip", "direction": [0.0, -1.0]}},
+            **cantilever_data({"kind": "distributed", "beam": "beam", "direction": [0.0, -1.0]}, [q]),
             "drives": {"h": {"kind": "displacement", "point": "T", "direction": [0.0, 1.0]}},
-            "contacts": {
-                "c": {
-                    "kind": "beam-half-plane",
-                    "beam": "strip",
-                    "body": "floor",
-                    "point": [0.0, -0.5 * thickness],
-                    "normal": [0.0, 1.0],
-                }
-            },
+            "contacts": {"c": {**floor, "point": [0.0, -0.5 * THICKNESS], "normal": [0.0, 1.0]}},
             "stages": [
-                {"name": "lie", "steps": "q", "stations": [q]},
+                {"name": "lie", "steps": "P", "stations": [q]},
                 {"name": "lift", "steps": "h", "stations": heights.tolist()},
             ],
             "probes": [{"of": "c", "quantity": "ends"}, {"of": "T", "quantity": "reaction"}],
@@ -229,7 +205,7 @@ def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
     )
     answer = cprbm.answer(scene, cprbm.Settings(links=links))
     assert answer.completed, answer.sentence
-    free = (24.0 * 2e11 * width * thickness**3 / 12.0 * heights / q) ** 0.25
+    free = (24.0 * RIGIDITY * heights / q) ** 0.25
     lifted = [station.values for station in answer.stations[1:]]
-    assert [values["c.ends"][1] for values in lifted] == pytest.approx(length - free, abs=0.05 * length / links)
+    assert [values["c.ends"][1] for values in lifted] == pytest.approx(LENGTH - free, abs=0.05 * LENGTH / links)
     assert [values["T.reaction"][1] for values in lifted] == pytest.approx(0.5 * q * free, rel=1e-3)
