@@ -77,7 +77,8 @@ class Settings(BaseModel):
             *(Mistake(f"settings.links.{beam}", found, allowed, scene.file) for beam, found, allowed in wrong)
         )
         met: tuple[Requirement, ...] = ("overlap at rest", "edge", "from", "together")
-        if scene.contacts and self.formulation == "auto" and contacts_may_hold(scene):
+        if scene.contacts and self.formulation == "auto" and all(_unsupported_parts(scene)):
+            # contacts may hold every part without support
             met += ("support",)
         refuse(scene, "the CPRBM", *met)
 
@@ -85,11 +86,6 @@ class Settings(BaseModel):
 def loose_bodies(scene: Scene) -> list[str]:
     """Bodies with a single motion that no beam, pin or drive resists: only contacts may hold them."""
     return [name for name in _unsupported_parts(scene) if name]
-
-
-def contacts_may_hold(scene: Scene) -> bool:
-    """True if every part without support is such a body."""
-    return all(_unsupported_parts(scene))
 
 
 def _unsupported_parts(scene: Scene) -> Iterator[str]:

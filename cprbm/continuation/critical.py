@@ -113,21 +113,17 @@ def contact_ends(trail: list[Reached], beyond: float) -> CriticalPoint | None:
     geometry, earlier = last.solved.system.geometry, _earlier(trail, width)
     if earlier is None:
         return None
-    slips = [Pressed(pair) for pair in sorted(pressing(last.solved))]
-    ends = [(each, each.force, Loss.CONTACT) for each in _may_lift(last.solved)]
-    for ended, value, loss in ends + [(each, partial(_to_end, pair=each.pair), Loss.SLIP) for each in slips]:
+    pairs, places = sorted(pressing(last.solved)), last.solved.state.contacts.places
+    closed = taken(places, last.solved.state.contacts.closed)
+    lifted = [*map(Pressed, pairs), *map(Pressed, closed.pair.tolist(), closed.piece.tolist())]
+    ends = [(each, each.force, Loss.CONTACT) for each in lifted]
+    for ended, value, loss in ends + [(Pressed(pair), partial(_to_end, pair=pair), Loss.SLIP) for pair in pairs]:
         zero = _vanishes(value, earlier, last)
         if zero - last.t <= NEAR * width:
             after = _without(last.solved, ended)
             if after is None or blocked(after).lost or loss is Loss.SLIP:
                 return opened(last.solved, after, zero, loss, geometry.pairs[ended.pair].name, width)
     return None
-
-
-def _may_lift(solved: Solved) -> list[Pressed]:
-    """Closed pairs, and every closed place."""
-    places = taken(solved.state.contacts.places, solved.state.contacts.closed)
-    return [*map(Pressed, sorted(pressing(solved))), *map(Pressed, places.pair.tolist(), places.piece.tolist())]
 
 
 def _without(solved: Solved, lifted: Pressed) -> Solved | None:
@@ -186,7 +182,7 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
         Loss.FOLD if fold else Loss.BIFURCATION,
         "",
         last.solved,
-        last.solved,
+        blocked(last.solved),
         mode.curvature,
         mode.curvature,
     )

@@ -85,7 +85,9 @@ def certify(
     gradient, (apart, overlap, pull) = np.abs(solved.gradient), contact_measures(solved)
     residual = float(gradient[~system.equations].max()) / scale
     violation = max(float(gradient[system.equations].max()), apart)
-    complementarity = max(_complementarity(solved, acting), pull) / scale
+    # pull of a closed stop, turn of an open stop beyond the limit
+    stops = np.where(state.driven, state.multipliers(system), -solved.values)[system.limits & acting]
+    complementarity = max(float(np.max(stops, initial=0.0)), pull) / scale
     force, couple = (size / scale for size in _resultants(solved))
     balance_limit = max(BALANCE, 100.0 * floor)
     checks = (
@@ -116,13 +118,6 @@ def certify(
         failures=tuple(sentence for _, sentence in failures),
     )
     return certificate, failures[0][0] if failures else Ending.COMPLETED
-
-
-def _complementarity(solved: Solved, acting: Flags) -> float:
-    """Largest pull of a closed stop, or largest turn beyond an open stop's limit."""
-    system, state = solved.system, solved.state
-    pulls = np.where(state.driven, state.multipliers(system), -solved.values)[system.limits & acting]
-    return float(np.max(pulls, initial=0.0))
 
 
 def _sizes(system: System, z: Array) -> tuple[float, float, float, float]:

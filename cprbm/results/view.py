@@ -129,11 +129,10 @@ class View:
 
     def angles(self, beam: str) -> Array:
         """Angles (k,) of the sections at a beam's samples, with the flexibility beside loads at places of the beam."""
-        samples = self.samples[beam]
+        system, samples = self.solved.system, self.samples[beam]
         turns = self.z[self.mechanism.beam_angles(beam)] - samples.chain.link_angle
-        return np.asarray(
-            samples.rest + (samples.weights * turns[samples.links]).sum(axis=1) - self._hidden_forces @ samples.hidden
-        )
+        hidden = hidden_forces(system, self.z, self.z[system.rows.first :]) @ samples.hidden
+        return np.asarray(samples.rest + (samples.weights * turns[samples.links]).sum(axis=1) - hidden)
 
     @cached_property
     def multipliers(self) -> dict[str, float]:
@@ -153,12 +152,6 @@ class View:
         """Arc length and position of a beam's end, in units."""
         chain, at = self.mechanism.chains[beam], 0 if end == "start" else -1
         return float(chain.arcs[at]), self.nodes[beam][at]
-
-    @cached_property
-    def _hidden_forces(self) -> Array:
-        """Multipliers (2 rows,) of loads at places of beams, across and along their links."""
-        system = self.solved.system
-        return hidden_forces(system, self.z, self.z[system.rows.first :])
 
     @cached_property
     def pressed(self) -> dict[str, Pressed]:

@@ -64,3 +64,43 @@ def test_a_pull_along_it_moves_nothing(gap):
     assert values["R.reaction"] == pytest.approx(turned(-FORCE, 0.0), rel=1e-12)
     assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=1e-9 * FORCE * LENGTH)
     assert values["edge.force"][0] == pytest.approx(0.0, abs=1e-9 * FORCE)
+
+
+@pytest.mark.parametrize(("beyond", "links"), [("stop", 80), ("stop", 100), ("jump", 80)])
+def test_the_flat_part_of_a_buckled_strip_buckles_off(beyond, links):
+    """A strip between clamps bends out by H to a wall, and lies flat there between two bent parts of 2π/k, k² = P/EI.
+
+    The flat part is clamped by the bent parts and buckles at k (L − 4π/k) = 2π: k = 6π/L and P = 36 π² EI/L².
+    The ends have come closer by PL/EA + 3 H² k/4π; the slopes are small to 2 %.
+    """
+    young, length, thickness, width, gap = 2e11, 0.1, 5e-4, 0.01, 3e-3
+    rigidity, area = young * width * thickness**3 / 12.0, width * thickness
+    force, height = 36.0 * np.pi**2 * rigidity / length**2, gap - 0.5 * thickness
+    shortening = force * length / (young * area) + 4.5 * height**2 / length
+    stations = [shortening * share for share in (0.5, 0.75, 0.97, 1.1, 1.2)]
+    beam = {"curve": {"kind": "line", "start": [0.0, 0.0], "end": [length, 0.0]}, "material": "m"}
+    beam |= {"thickness": thickness, "width": width, "imperfection": {"amplitude": 2e-5, "half_waves": 1}}
+    beam |= {"start": {"joint": "weld", "point": "A"}, "end": {"joint": "weld", "point": "T"}}
+    wall = {"kind": "beam-half-plane", "beam": "strip", "body": "g", "point": [0.0, gap], "normal": [0.0, -1.0]}
+    answer = cprbm.answer(
+        scene_from(
+            {
+                "name": "strip",
+                "theory": "stretch",
+                "materials": {"m": {"youngs_modulus": young, "poisson_ratio": 0.3}},
+                "bodies": {
+                    "g": {"motion": "fixed", "points": {"A": [0.0, 0.0]}},
+                    "b": {"motion": "slides", "along": [1.0, 0.0], "points": {"T": [length, 0.0]}},
+                },
+                "beams": {"strip": beam},
+                "contacts": {"wall": wall},
+                "drives": {"v": {"kind": "displacement", "point": "T", "direction": [-1.0, 0.0]}},
+                "stages": [{"name": "press", "steps": "v", "stations": stations, "beyond": beyond}],
+                "probes": [{"of": "T", "quantity": "reaction"}],
+            }
+        ),
+        cprbm.Settings(links=links),
+    )
+    assert answer.critical[0].value == pytest.approx(shortening, rel=0.02)
+    assert len(answer.stations) == (3 if beyond == "stop" else 5), answer.sentence
+    assert all(abs(station.values["T.reaction"][0]) < force for station in answer.stations)
