@@ -100,7 +100,7 @@ def moment_mode(model: Model, system: System, drag: float) -> Array:
     on, moments = _feasible(model, system), np.zeros(model.size)
     factor = _factor(on.stiffness + drag * on.inertia)
     lengths = on.mass[model.node_dofs[2]]
-    moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths))
+    moments[model.node_dofs[2]] = lengths * (1.0 + np.cumsum(lengths)) ** 2
     return moments if factor is None else on.solve(factor, moments)
 
 

@@ -71,7 +71,8 @@ def assembled(system: System, settings: Settings) -> Driver:
         SceneError: a stop forbids the assembled state.
     """
     state = rest_state(system)
-    loose = _loose_rows(system)
+    apart = {f"{beam}@{end}.{axis}" for beam, end in apart_ends(system.mechanism) for axis in "xy"}
+    loose = np.array([row.name in apart for row in system.mechanism.rows], dtype=bool)
     state = without_repeated(system, replace(state, driven=state.driven & ~loose))
     try:
         first = equilibrium(system, state, settings.iterations)
@@ -119,12 +120,6 @@ def _part(driver: Driver, way: Way, sentence: str) -> None:
         driver.follow(way, "stop")
     except StepError as failure:
         raise StepError(failure.ending, f"{failure.ending.value}: as {sentence}, {failure}") from failure
-
-
-def _loose_rows(system: System) -> Flags:
-    """Rows of the ends drawn apart."""
-    names = {f"{beam}@{end}.{axis}" for beam, end in apart_ends(system.mechanism) for axis in "xy"}
-    return np.array([row.name in names for row in system.mechanism.rows], dtype=bool)
 
 
 def _forbidden(system: System, z: Array) -> Iterator[Mistake]:

@@ -37,6 +37,9 @@ KICK = 2e-3
 LONGEST = 0.3
 """Largest turn in one step, rad."""
 
+SOFTEST = 1.1
+"""Strength of the springs over |κ| against which the faint moments turn the links: the softest mode grows tenfold."""
+
 STIFFER = 4.0
 SOFTER = 0.5
 STIFFEST = 1e12
@@ -51,6 +54,9 @@ STILL = 1e-9
 KICKS = 5
 """Saddles that a descent may come to."""
 
+TRIES = 20
+"""Strengths of the springs for the first step."""
+
 SAME = 1e-3
 """Relative difference of two energies' decreases that counts as none: a mirror image differs by the residual."""
 
@@ -64,18 +70,27 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
     Raises:
         NotConvergedError: the descent does not end.
     """
-    state, strength = _kicked(system, replace(saddle.state, target=target), curvature, acting, iterations)
-    energy, last, kicks = potential(system, state), 0.0, 0
-    stiffest = STIFFEST * strength
+    start = replace(saddle.state, target=target)
+    beyond = _step(system, start, 0.0, acting, iterations)
+    if beyond is not None and blocked(beyond).lost and _moved(system, start, beyond.state) < NEAR:
+        # beyond a bifurcation the branch goes on as a saddle, without a force along the mode
+        start, curvature = beyond.state, softest(beyond).curvature
+    state, strength = _kicked(system, start, curvature, acting, iterations)
+    energy, last, kicks, stiffest = potential(system, state), 0.0, 0, STIFFEST * strength
     for _ in range(STEPS):
         step = _step(system, state, strength, acting, iterations)
         moved = _moved(system, state, step.state) if step is not None else np.inf
-        if step is None or moved > LONGEST or potential(system, step.state) > energy + ROUND_OFF * abs(energy):
+        if (
+            step is None
+            or moved > LONGEST
+            or _turns_back(system, start, state, step.state)
+            or potential(system, step.state) > energy + ROUND_OFF * abs(energy)
+        ):
             strength *= STIFFER
             if strength > stiffest:
                 break
             continue
-        state, energy = step.state, potential(system, step.state)
+        start, state, energy = state, step.state, potential(system, step.state)
         if (moved < NEAR and moved <= last) or moved < STILL:
             found = _step(system, state, 0.0, acting, iterations)
             if found is not None and _moved(system, state, found.state) < LONGEST:
@@ -83,8 +98,8 @@ def descend(system: System, saddle: Solved, curvature: float, target: Array, act
                     return found
                 # a saddle above the state, such as the begin of the descent, is not on the way down
                 if kicks < KICKS and potential(system, found.state) <= energy + ROUND_OFF * abs(energy):
-                    kicks += 1
-                    state, strength = _kicked(system, found.state, softest(found).curvature, acting, iterations)
+                    kicks, start = kicks + 1, found.state
+                    state, strength = _kicked(system, start, softest(found).curvature, acting, iterations)
                     energy, last = potential(system, state), 0.0
                     continue
             if moved < STILL:
@@ -100,36 +115,43 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
     Raises:
         NotConvergedError: no step works.
     """
-    strength, leaning = 2.0 * abs(curvature) + 1e-6, np.zeros(system.size)
-    leaning[system.angles] = system.metric * (1.0 + np.cumsum(system.metric))
-    for _ in range(20):
-        steps, held = [], at_state(system, start, Springs(strength, start.z[system.angles]))
-        change = held.response(leaning)
-        change[system.rows.first :] = 0.0
-        change *= KICK / np.abs(change[system.angles]).max()
-        for sense in (1.0, -1.0) if not held.lost else ():
-            kicked = replace(start, z=start.z + sense * change)
-            step = _step(system, kicked, strength, acting, iterations)
-            if step is not None and _moved(system, kicked, step.state) <= KICK:
-                steps.append(step.state)
-        if steps:
-            energies = [potential(system, state) for state in steps]
-            energy = potential(system, start)
+    soft, leaning = SOFTEST * abs(curvature) + 1e-6, np.zeros(system.size)
+    leaning[system.angles] = system.metric * (1.0 + np.cumsum(system.metric)) ** 2
+    while (held := at_state(system, start, Springs(soft, start.z[system.angles]))).lost:
+        soft *= STIFFER
+    change = held.response(leaning)
+    change[system.rows.first :] = 0.0
+    change *= KICK / np.abs(change[system.angles]).max()
+    kicked = [replace(start, z=start.z + sense * change) for sense in (1.0, -1.0)]
+    strength, energy = 2.0 * soft, potential(system, start)
+    for _ in range(TRIES):
+        steps = [_step(system, each, strength, acting, iterations) for each in kicked]
+        states = [step.state for step in steps if step is not None]
+        moved = [_moved(system, each, step.state) for each, step in zip(kicked, steps, strict=True) if step is not None]
+        if states and max(moved) <= KICK:
+            energies = [potential(system, state) for state in states]
             equal = SAME * abs(energy - min(energies)) + ROUND_OFF * abs(energy)
-            return steps[int(energies[0] - min(energies) > equal)], strength
+            return states[int(energies[0] - min(energies) > equal)], strength
         strength *= STIFFER
     raise NotConvergedError("the descent does not begin")
 
 
 def _step(system: System, state: State, strength: float, acting: Flags, iterations: int) -> Solved | None:
-    """Minimum of Π plus the springs' energy near a state; None where none is found."""
+    """Minimum of Π plus the springs' energy near a state, without springs any equilibrium; None where none is found."""
     springs = Springs(strength, state.z[system.angles]) if strength else None
     try:
-        return with_stops(system, state, acting, iterations, springs)
+        found = with_stops(system, state, acting, iterations, springs)
     except NotConvergedError:
         return None
+    return None if springs and found.lost else found
 
 
 def _moved(system: System, before: State, after: State) -> float:
     """Largest turn of a link between two states."""
     return float(np.abs(after.z - before.z)[system.angles].max())
+
+
+def _turns_back(system: System, first: State, second: State, third: State) -> bool:
+    """True if the links turn back behind the second state after the energy has decreased on the way to that state."""
+    turns = (second.z - first.z) * (third.z - second.z)
+    return bool(system.metric @ turns[system.angles] < 0.0) and potential(system, second) < potential(system, first)

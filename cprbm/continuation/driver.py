@@ -159,7 +159,10 @@ class Driver:
                 raise StepError(Ending.STEP_TOO_SMALL, "stops or contacts close and open again without a step")
             refused = refused if refused > at else np.inf
             step = min(2.0 * (t - self.reached), refused - at)
-            self._accept(way, at, solved, trail)
+            # a contact that closes without an event has touched at the begin of the step
+            self._note(way, pressing_names(solved), self.reached, at)
+            self.reached, self.solved = at, solved
+            trail = [*trail, Reached(at, solved)][-TRAIL:]
             if change is not None:
                 trail = self._changed(way, at, change, beyond)
 
@@ -222,13 +225,6 @@ class Driver:
         self.spent += solved.iterations
         return solved
 
-    def _accept(self, way: Way, t: float, solved: Solved, trail: list[Reached]) -> None:
-        # a contact that closes without an event has touched at the begin of the step
-        self._note(way, pressing_names(solved), self.reached, t)
-        self.reached, self.solved = t, solved
-        trail.append(Reached(t, solved))
-        del trail[:-TRAIL]
-
     def _note(self, way: Way, names: frozenset[str], closed: float, opened: float | None = None) -> None:
         """Add the contacts ``closed`` or ``opened`` at fractions of the way since the last state to the events."""
         before, self.touching = self.touching, names | self.drawn
@@ -258,11 +254,9 @@ class Driver:
         if blocked(after).lost:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)
-        names = pressing_names(after)
-        if change.closes:
-            self._note(way, names | {name}, t - change.early, t)
-        else:
-            self._note(way, names, t, t)
+        self._note(
+            way, pressing_names(after) | (frozenset([name]) if change.closes else frozenset()), t - change.early, t
+        )
         self.solved = after
         return [Reached(t, after)]
 
@@ -272,9 +266,7 @@ class Driver:
         Raises:
             StepError: the solve ends.
         """
-        point = contact_ends(trail, t) or critical_point(trail, t, way.change)
-        if point is None:
-            point = self._locked(way, t, trail, refused)
+        point = contact_ends(trail, t) or critical_point(trail, t, way.change) or self._locked(way, t, trail, refused)
         return self._leave(way, point, beyond)
 
     def _locked(self, way: Way, t: float, trail: list[Reached], refused: StepError) -> CriticalPoint:

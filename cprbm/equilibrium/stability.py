@@ -24,7 +24,7 @@ import numpy as np
 
 from cprbm.contact import TOUCHING, Contacts
 from cprbm.equilibrium.columns import gap_rates
-from cprbm.equilibrium.iteration import closable
+from cprbm.equilibrium.iteration import arcs_of, closable
 from cprbm.equilibrium.neighbours import with_minima
 from cprbm.equilibrium.solving import Solved, at_state
 from cprbm_scene.answer import Array, Flags
@@ -64,13 +64,18 @@ def softest(solved: Solved) -> Mode:
 def blocked(solved: Solved) -> Solved:
     """The state with open idle places, and with the closed touching places that block a mode in both senses."""
     system, state = solved.system, solved.state
-    places, largest = state.contacts.places, np.zeros(len(system.geometry.pairs))
-    np.maximum.at(largest, places.pair, places.force)
-    idle = state.contacts.closed & (places.force < IDLE * largest[places.pair])
+    places, closed, idle = (
+        state.contacts.places,
+        state.contacts.closed,
+        np.zeros(len(state.contacts.closed), dtype=bool),
+    )
+    arcs = arcs_of(system.geometry.arrays, places)
+    for pair in set(places.pair[closed].tolist()):
+        mine = np.flatnonzero(closed & (places.pair == pair))
+        between = mine[np.argsort(arcs[mine])][1:-1]
+        idle[between] = places.force[between] < IDLE * places.force[mine].max()
     if idle.any():
-        solved = at_state(
-            system, replace(state, contacts=replace(state.contacts, closed=state.contacts.closed & ~idle))
-        )
+        solved = at_state(system, replace(state, contacts=replace(state.contacts, closed=closed & ~idle)))
     if not solved.lost or not system.geometry.pairs:
         return solved
     contacts, touching = _touching(solved)

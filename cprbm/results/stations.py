@@ -223,7 +223,13 @@ class Run:
             stage=stage.name,
             value=station,
             values=probe_values(statics, stage.name),
-            shapes={beam: _shape(view, beam) for beam in self.scene.beams},
+            shapes={
+                beam: Shape(
+                    frozen_array(self.samples[beam].s[at] * units.length),
+                    *map(frozen_array, (view.lines[beam][at] * units.length + units.origin).T),
+                )
+                for beam, at in ((beam, self.samples[beam].shape) for beam in self.scene.beams)
+            },
             touching=touching,
             certificate=certificate,
             branch=len(self.critical),
@@ -235,10 +241,3 @@ class Run:
                 for name, first in self.system.mechanism.bodies.items()
             },
         )
-
-
-def _shape(view: View, beam: str) -> Shape:
-    """Deformed neutral line, m."""
-    units, samples = view.mechanism.units, view.samples[beam]
-    places = view.lines[beam][samples.shape] * units.length + units.origin
-    return Shape(*map(frozen_array, (samples.s[samples.shape] * units.length, *places.T)))
