@@ -27,6 +27,7 @@ from functools import cache
 
 import numpy as np
 import shapely
+from shapely.ops import split
 
 from comparisons.audit.state import PIECES, Complex, Finding, StationState
 from comparisons.formats import at_station
@@ -144,10 +145,26 @@ def _solid_at_rest(contact: Rigid, longest: float) -> shapely.Geometry:
     else:
         places, left = edge_places(contact, FAR * longest, PIECES), is_free_on_the_left(contact)
         if np.abs(places[0] - places[-1]).max() >= SMALL * np.ptp(places, axis=0).max():
-            return shapely.LineString(places).buffer(-depth if left else depth, single_sided=True).buffer(-smaller)
+            return _behind(places, -depth if left else depth).buffer(-smaller)
         disc = shapely.Polygon(places)
         hole = disc.exterior.is_ccw == left
     return (disc.buffer(depth) - disc if hole else disc).buffer(-smaller)
+
+
+def _behind(places: Array, depth: float) -> shapely.Geometry:
+    """The solid up to a depth behind an open edge (k, 2), on the left of the edge where ``depth`` is positive.
+
+    Behind a needle the strip along one flank reaches out of the other flank.  The edge, straight beyond both ends,
+    divides the strip; the parts beside the solid's face of the edge are the solid.
+    """
+    strip = shapely.LineString(places).buffer(depth, single_sided=True)
+    x, size = places @ (1.0, 1j), np.abs(depth) + np.hypot(*np.ptp(places, axis=0))
+    onward = np.diff(x) / np.abs(np.diff(x))
+    whole = np.concatenate([x[:1] - size * onward[:1], x, x[-1:] + size * onward[-1:]])
+    beside = 0.5 * (x[1:] + x[:-1]) + SMALL * depth * 1j * onward
+    face = shapely.multipoints(np.column_stack([beside.real, beside.imag]))
+    parts = shapely.get_parts(split(strip, shapely.LineString(np.column_stack([whole.real, whole.imag]))))
+    return shapely.union_all(parts[shapely.intersects(parts, face)])
 
 
 def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:

@@ -176,6 +176,27 @@ def test_round_solids_stay_quiet(edge):
     assert audit(scene, answer).complaints == ()
 
 
+def on_a_needle(depth):
+    """A beam pressed on a needle at 0.55 of the length, whose tip stands a ``depth`` in lengths below the beam."""
+    x, y = 0.55, -depth - 0.5 * THICKNESS / LENGTH
+    flanks = LENGTH * np.array([[x - 0.02, y - 0.2], [x, y], [x + 0.02, y - 0.2]])
+    data = cantilever_data(force(0.0, -1.0), [])
+    needle = {"kind": "beam-line", "beam": "beam", "body": "wall", "points": flanks.tolist(), "side": "left"}
+    data["contacts"], data["loads"] = {"needle": needle}, {}
+    data["drives"] = {"P": {"kind": "displacement", "point": "T", "direction": [0.0, -1.0]}}
+    data["stages"][0]["stations"] = [0.1 * LENGTH, 0.25 * LENGTH]
+    return scene_from(data)
+
+
+def test_a_beam_beside_a_needle_penetrates_only_if_it_cuts_the_needle():
+    scene, lower = on_a_needle(0.01), on_a_needle(0.04)
+    right, wrong = map(SOLVERS["cprbm"], (scene, lower))
+    assert right.completed, right.sentence
+    assert audit(scene, right).complaints == ()
+    said = audit(scene, wrong).complaints
+    assert any("penetrates its partner in needle" in sentence for sentence in said), said
+
+
 def test_an_answer_of_a_single_element_is_audited():
     """Such a beam has no place between its ends."""
     scene = scene_from(cantilever_data(force(0.0, 1.0), [1e-3 * RIGIDITY / LENGTH**2]))
