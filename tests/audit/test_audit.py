@@ -6,7 +6,7 @@ Faults are planted in right answers.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -195,6 +195,36 @@ def test_a_beam_beside_a_needle_penetrates_only_if_it_cuts_the_needle():
     assert audit(scene, right).complaints == ()
     said = audit(scene, wrong).complaints
     assert any("penetrates its partner in needle" in sentence for sentence in said), said
+
+
+FINE = fea_reference.Settings(elements=160, kinematics="bending")
+
+
+@pytest.mark.parametrize(
+    "solve", [SOLVERS["cprbm"], partial(fea_reference.answer, settings=FINE)], ids=["cprbm", "fea"]
+)
+def test_a_taut_strip_on_a_circle_has_the_moments_of_its_mesh_alone(solve):
+    """Drawn on the circle and pulled along the tangent, by a faint and a larger force: no section bends."""
+    angle, radius = 1.571, LENGTH
+    tip, data = (
+        [radius * np.cos(angle), radius * np.sin(angle)],
+        cantilever_data(force(-np.sin(angle), np.cos(angle)), []),
+    )
+    data["bodies"]["wall"]["points"]["R"], data["bodies"]["tip"]["points"]["T"] = [radius, 0.0], tip
+    curve = {"kind": "arc", "center": [0.0, 0.0], "start": [radius, 0.0], "end": tip, "direction": "counterclockwise"}
+    data["beams"]["beam"]["curve"] = curve
+    disc = {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": [0.0, 0.0]}
+    data["contacts"] = {"disc": {**disc, "radius": radius - 0.5 * THICKNESS}}
+    data["stages"][0]["stations"] = [share * RIGIDITY / LENGTH**2 for share in (2e-3, 2e-2)]
+    scene = scene_from(data)
+    answer = solve(scene)
+    assert answer.completed, answer.sentence
+    assert audit(scene, answer).complaints == ()
+    # a moment of half of what the force makes about the circle's middle is none of the mesh
+    last = answer.stations[-1]
+    state = replace(last.beams["beam"], M=last.beams["beam"].M + 0.5 * last.value * radius)
+    bent = replace(answer, stations=(replace(last, beams={"beam": state}),))
+    assert any("its moments make" in sentence for sentence in audit(scene, bent).complaints)
 
 
 def test_an_answer_of_a_single_element_is_audited():
