@@ -117,7 +117,8 @@ _FAMILIES = {
     "combined_stress": "stress",
 }
 
-_PLACES_OF_CONTACT = frozenset({"centre", "ends"})
+PLACES_OF_CONTACT: frozenset[Quantity] = frozenset({"centre", "ends"})
+"""Quantities whose values are arc lengths on the contact's first beam."""
 
 
 def norm(quantity: Quantity, values: Array) -> float:
@@ -174,7 +175,7 @@ def probe_scales(scene: Scene, answers: Sequence[Answer]) -> dict[tuple[str, str
             family = families.get(_FAMILIES.get(probe.quantity, probe.quantity), 0.0)
             balance = families["balance"] if probe.quantity == "reaction_moment" else 0.0
             scale = max(own, balance, FAMILY_SHARE * family, NATURAL_SHARE * natural)
-            found[stage.name, probe.name] = natural if probe.quantity in _PLACES_OF_CONTACT else scale
+            found[stage.name, probe.name] = natural if probe.quantity in PLACES_OF_CONTACT else scale
     return found
 
 

@@ -87,6 +87,19 @@ def test_words_beside_the_exact_answer(hinge, exact, cprbm, fea, word, sentence)
     assert sentence in found.verdict.sentence
 
 
+@pytest.mark.parametrize(
+    ("exact", "off", "word"),
+    [(1.0, 1e-6, "AGREE"), (0.0, 1e-6, "AGREE"), (0.5, 1e-6, "DIFFER EXACT"), (1.0, 1e-4, "DIFFER EXACT")],
+)
+def test_an_exact_place_at_an_end_of_a_beam_is_known_to_the_root_of_round_off(hinge, exact, off, word):
+    """The place leaves the end for the inside of the beam once the overlap shows, and grows as the place squared."""
+    length = np.pi * 0.025
+    true, found = (with_value("contact.centre", [length * abs(exact - each)]) for each in (0.0, off))
+    solvers = (MadeUp(solver, 0.0, spoilt=found) for solver in ("cprbm", "fea"))
+    compared = beside(hinge, replace(EXACT, spoilt=true), *solvers)
+    assert word_of(compared) == word, compared.verdict.sentence
+
+
 def test_a_place_in_truth_alone_is_undecided(hinge):
     place = hinge.model_copy(update={"probes": tuple(p for p in hinge.probes if p.name == "contact.centre")})
     assert word_of(beside(place, replace(EXACT, contact=False))) == "UNDECIDED EVENT"
