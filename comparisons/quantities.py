@@ -35,6 +35,8 @@ closing_load                    the stepped load or drive                       
 centre, ends                    length of the contact's first beam, which is the scale
 ==============================  ======================================================  ==========
 
+A beam in tension may not bend at all: the value v of a stress is at least the stress N/A of the beam's normal force.
+
 A moment at a support depends on its reference point and may be small by accident.  The scale of a reaction moment is
 therefore the largest moment of the balance: of supports, of drives and of the load.  A drive is resisted by at least
 E·I/ℓ per radian of the softest beam, whether or not its reaction is a probe.
@@ -251,13 +253,21 @@ def denominator(probe: Probe, reference: float, scale: float) -> float:
 
 
 def _largest(scene: Scene, stage: Stage, answers: Sequence[Answer]) -> dict[str, float]:
-    """Largest norm of every probe at the stage's stations; values that are not finite do not count."""
-    stations = _stations(stage, answers)
-    values = {probe: [at.values[probe.name] for at in stations if probe.name in at.values] for probe in scene.probes}
+    """Largest size of every probe at the stage's stations."""
     return {
-        probe.name: max((norm(probe.quantity, value) for value in found if np.isfinite(value).all()), default=0.0)
-        for probe, found in values.items()
+        probe.name: max((_size(scene, probe, at) for at in _stations(stage, answers)), default=0.0)
+        for probe in scene.probes
     }
+
+
+def _size(scene: Scene, probe: Probe, station: StationAnswer) -> float:
+    """Norm of a probe at a station, of a stress at least the stress of the normal force; 0 if not finite or absent."""
+    values = station.values.get(probe.name, np.zeros(0))
+    if probe.quantity in STRESSES and probe.of in station.beams:
+        beam, state = scene.beams[probe.of], station.beams[probe.of]
+        u = state.s / state.s[-1]
+        values = np.append(values, state.N / (beam.thickness_at(u) * beam.width_at(u)))
+    return norm(probe.quantity, values) if np.isfinite(values).all() else 0.0
 
 
 def _stations(stage: Stage, answers: Sequence[Answer]) -> list[StationAnswer]:

@@ -27,6 +27,7 @@ from functools import cache
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 from shapely.ops import split
 
 from comparisons.audit.state import PIECES, Complex, Finding, StationState
@@ -151,20 +152,20 @@ def _solid_at_rest(contact: Rigid, longest: float) -> shapely.Geometry:
     return (disc.buffer(depth) - disc if hole else disc).buffer(-smaller)
 
 
-def _behind(places: Array, depth: float) -> shapely.Geometry:
+def _behind(places: Array, depth: float) -> BaseGeometry:
     """The solid up to a depth behind an open edge (k, 2), on the left of the edge where ``depth`` is positive.
 
     Behind a needle the strip along one flank reaches out of the other flank.  The edge, straight beyond both ends,
-    divides the strip; the parts beside the solid's face of the edge are the solid.
+    divides the strip, and parts beside the free side of the edge alone are no solid.
     """
     strip = shapely.LineString(places).buffer(depth, single_sided=True)
-    x, size = places @ (1.0, 1j), np.abs(depth) + np.hypot(*np.ptp(places, axis=0))
-    onward = np.diff(x) / np.abs(np.diff(x))
-    whole = np.concatenate([x[:1] - size * onward[:1], x, x[-1:] + size * onward[-1:]])
-    beside = 0.5 * (x[1:] + x[:-1]) + SMALL * depth * 1j * onward
-    face = shapely.multipoints(np.column_stack([beside.real, beside.imag]))
-    parts = shapely.get_parts(split(strip, shapely.LineString(np.column_stack([whole.real, whole.imag]))))
-    return shapely.union_all(parts[shapely.intersects(parts, face)])
+    size, onward = abs(depth) + np.hypot(*np.ptp(places, axis=0)), np.diff(places, axis=0)
+    onward /= np.hypot(*onward.T)[:, None]
+    whole = np.concatenate([places[:1] - size * onward[:1], places, places[-1:] + size * onward[-1:]])
+    middle, beside = 0.5 * (places[1:] + places[:-1]), SMALL * depth * onward[:, ::-1] * [-1.0, 1.0]
+    parts = shapely.get_parts(split(strip, shapely.LineString(whole)))
+    solid, free = (shapely.intersects(parts, shapely.multipoints(middle + way * beside)) for way in (1.0, -1.0))
+    return shapely.union_all(parts[solid | ~free])
 
 
 def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:

@@ -8,7 +8,8 @@ v_o     value of the CPRBM in ``auto`` in the other theory
 θ       |v_o − v_a|, the step of theory, both at N links: their errors of discretisation cancel
 x       exact value, where the comparison is in ``bending`` and the elastica reference has the station
 q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale; the root of this share for a place
-        of contact at an end of the beam, where the gap falls with the square of the distance from the end
+        of contact at an end of the beam in the exact answer alone, since the overlap inside of the beam that moves the
+        exact place grows with the square of the distance from the end
 ======  ==========================================================================================
 
 A probe has one stated uncertainty per solver, stage and branch: the largest of the stations.  An error changes its sign
@@ -243,11 +244,10 @@ def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], 
     if exact is None or row.exact is None or row.exact.shape != row.fea.shape:
         return None
     share = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
-    if (
-        row.probe.quantity in PLACES_OF_CONTACT
-        and (np.abs(row.exact - [[0.0], [row.scale]]) <= share * row.scale).any()
-    ):
-        share = math.sqrt(share)
+    if row.probe.quantity in PLACES_OF_CONTACT:
+        answers = np.stack((row.exact, row.cprbm, row.fea))
+        at_end = np.minimum(answers, row.scale - answers) <= ROUND_OFF * row.scale
+        share = math.sqrt(share) if np.any(at_end[0] & ~at_end[1:].any(axis=0)) else share
     return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), share * row.scale)
 
 
