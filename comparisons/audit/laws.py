@@ -145,8 +145,8 @@ def section_law(state: StationState) -> Iterator[Finding]:
         s, M, h, ripple = beam.state.s, beam.state.M, np.diff(beam.state.s), state.ripple(name)
         give = 1.0 / np.stack([beam.stiffness(at)[0] for at in (s[:-1], 0.5 * (s[1:] + s[:-1]), s[1:])])
         made = h * (give[0] * M[:-1] + 2.0 * give[1] * (M[1:] + M[:-1]) + give[2] * M[1:]) / 6.0
-        pressing = nearby(state, name, 0.5 * (s[1:] + s[:-1]), beam.h)
-        stepped = np.abs(np.diff(M)) + 0.125 * h * (np.abs(np.diff(beam.state.Q)) + pressing) + ripple
+        kinked = np.abs(np.diff(beam.state.Q)) + nearby(state, name, 0.5 * (s[1:] + s[:-1]), beam.h)
+        stepped = np.abs(np.diff(M)) + 0.125 * h * kinked + ripple
         varied = np.ptp(give, axis=0) * np.abs(M[1:] + M[:-1]) + SHARE * np.abs(made / h).max()
         off = np.abs(np.diff(beam.turned) - made) - h * (give.max(axis=0) * stepped + varied) - ANGLE
         yield off.max(), f"{name} at {s[np.argmax(off)]:.4g} m turns {off.max():.4g} rad off what its moments make"

@@ -121,8 +121,8 @@ class CriticalRow:
     @property
     def kind_open(self) -> bool:
         """Whether one solver has a fold and the other solver a bifurcation, at loads that agree."""
-        losses = {one.loss for one in (self.cprbm, self.fea) if one is not None}
-        return self.bounds is not None and losses == UNSTABLE and self.difference <= self.bounds.total
+        pair = {one and one.loss for one in (self.cprbm, self.fea)}
+        return pair == UNSTABLE and self.bounds is not None and self.difference <= self.bounds.total
 
     @property
     def word(self) -> Word:
@@ -146,9 +146,7 @@ def released(critical: Critical) -> float | None:
 
     A bifurcation with an energy that falls by less than the round-off of both energies releases none.
     """
-    if critical.after is None:
-        return None
-    fall = critical.energy - critical.after
+    fall = 0.0 if critical.after is None else critical.energy - critical.after
     return fall if fall > CONTINUES * abs(critical.energy) else None
 
 

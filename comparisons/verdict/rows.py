@@ -139,9 +139,7 @@ class Row:
 
     def fraction(self, value: float) -> float | None:
         """``value`` over the denominator; None without a finite quotient."""
-        if not math.isfinite(value):
-            return None
-        if self.denominator > 0.0:
+        if math.isfinite(value) and self.denominator > 0.0:
             return value / self.denominator
         return 0.0 if value == 0.0 else None
 
