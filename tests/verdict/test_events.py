@@ -124,6 +124,13 @@ def test_the_word_of_a_critical_point(crank, cprbm, fea, word):
     assert set(counted(found)) == {"AGREE"}
 
 
+def test_the_sentence_names_both_kinds_at_one_load(forward):
+    sentence = compared(forward, replace(C, **BIFURCATES), F).verdict.sentence
+    assert "(bifurcation) in the CPRBM and" in sentence
+    assert "(fold) in the finite elements" in sentence
+    assert "the loads agree, the kinds of the critical point do not: UNDECIDED" in sentence
+
+
 @pytest.mark.parametrize(("beyond", "word"), [(0, "UNDECIDED RUN_ENDED"), (1, "DIFFER EVENTS")])
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
 def test_a_run_that_ends_before_a_critical_point_says_nothing_of_it(forward, solver, beyond, word):
