@@ -158,9 +158,8 @@ def contact_model(runs: Runs, row: Row) -> float | None:
     answers = [runs.answers[name] for name in runs.formulations if name in runs.answers]
     stations = [find_station(answer, *row.where) for answer in answers]
     found = [at.values[row.probe.name] for at in stations if at is not None and at.branch == row.branch]
-    if row.counts is None or [value.shape for value in found] != [row.fea.shape] * 2:
-        return None
-    return norm(row.probe.quantity, (found[0] - found[1])[row.counts])
+    known = row.counts is not None and [value.shape for value in found] == [row.fea.shape] * 2
+    return norm(row.probe.quantity, (found[0] - found[1])[row.counts]) if known else None
 
 
 def thirds_of(compared: Comparison) -> tuple[Row, ...]:

@@ -35,6 +35,8 @@ closing_load                    the stepped load or drive                       
 centre, ends                    length of the contact's first beam, which is the scale
 ==============================  ======================================================  ==========
 
+A beam in tension may not bend at all: the value v of a stress is at least the stress N/A of the beam's normal force.
+
 A moment at a support depends on its reference point and may be small by accident.  The scale of a reaction moment is
 therefore the largest moment of the balance: of supports, of drives and of the load.  A drive is resisted by at least
 E·I/ℓ per radian of the softest beam, whether or not its reaction is a probe.
@@ -117,14 +119,13 @@ _FAMILIES = {
     "combined_stress": "stress",
 }
 
-_PLACES_OF_CONTACT = frozenset({"centre", "ends"})
+PLACES_OF_CONTACT: frozenset[Quantity] = frozenset({"centre", "ends"})
+"""Quantities whose values are arc lengths on the contact's first beam."""
 
 
 def norm(quantity: Quantity, values: Array) -> float:
     """Euclidean norm of ``values`` (k,); of a stress along a beam the largest magnitude; 0 without values."""
-    if values.size == 0:
-        return 0.0
-    return float(np.max(np.abs(values)) if quantity in STRESSES else np.linalg.norm(values))
+    return float(np.abs(values).max(initial=0.0) if quantity in STRESSES else np.linalg.norm(values))
 
 
 def stage_of(scene: Scene, name: str) -> Stage:
@@ -152,14 +153,9 @@ def direction(quantity: Quantity, difference: Array) -> Array:
 
     The norm of a stress is its largest magnitude: the vector of a stress points along the component of that magnitude.
     """
-    if not difference.any():
-        return np.zeros_like(difference)
-    if quantity in STRESSES:
-        along = np.zeros_like(difference)
-        worst = int(np.argmax(np.abs(difference)))
-        along[worst] = np.sign(difference[worst])
-        return along
-    return np.asarray(difference / np.linalg.norm(difference))
+    counts = np.arange(len(difference)) == np.argmax(np.abs(difference)) if quantity in STRESSES else True
+    along = np.where(counts, difference, 0.0)
+    return along / (np.linalg.norm(along) or 1.0)
 
 
 def probe_scales(scene: Scene, answers: Sequence[Answer]) -> dict[tuple[str, str], float]:
@@ -174,7 +170,7 @@ def probe_scales(scene: Scene, answers: Sequence[Answer]) -> dict[tuple[str, str
             family = families.get(_FAMILIES.get(probe.quantity, probe.quantity), 0.0)
             balance = families["balance"] if probe.quantity == "reaction_moment" else 0.0
             scale = max(own, balance, FAMILY_SHARE * family, NATURAL_SHARE * natural)
-            found[stage.name, probe.name] = natural if probe.quantity in _PLACES_OF_CONTACT else scale
+            found[stage.name, probe.name] = natural if probe.quantity in PLACES_OF_CONTACT else scale
     return found
 
 
@@ -199,8 +195,7 @@ def family_values(
     resistance = max(step["rotation"], step["displacement"] / lever) * float(softest) / lever
     shapes = (item for station in _stations(stage, answers) for item in station.shapes.items())
     deflections = (deflection(scene.beams[name], shape) for name, shape in shapes)
-    finite = (each for each in deflections if np.isfinite(each))  # other shapes do not count
-    moved = max(probes("displacement"), step["displacement"], *finite)
+    moved = max(probes("displacement"), step["displacement"], *filter(np.isfinite, deflections))
     turned = max(probes("rotation"), step["rotation"])
     balance = max(probes("reaction_moment"), step["moment"])
     moment = max(balance, probes("moment"), resistance)
@@ -222,7 +217,11 @@ def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
     """Value of a quantity where the stiffest beam is bent by a radian along the longest, in the quantity's unit."""
     lever = longest(scene)
     stiffness = float(max(_bending_stiffness(scene, beam).max() for beam in scene.beams.values())) / lever
-    by_kind = {
+    bent = max(scene.materials[beam.material].youngs_modulus * beam.thickest for beam in scene.beams.values()) / (
+        2.0 * lever
+    )
+    by_kind: dict[str, float] = {
+        **dict.fromkeys(STRESSES, bent),
         "displacement": lever,
         "rotation": 1.0,
         "angle": 1.0,
@@ -232,16 +231,9 @@ def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
         "beam_force": stiffness / lever,
         "distributed": stiffness / lever**2,
     }
-    match quantity:
-        case "closing_load":
-            return by_kind.get(scene.stepped(stage).kind, stiffness)
-        case "bending_stress" | "combined_stress":
-            stiffest: float = max(_modulus(scene, beam) * beam.thickest for beam in scene.beams.values())
-            return stiffest / (2.0 * lever)
-        case "centre" | "ends":
-            return length(scene.beams[scene.contacts[contact].beams[0]].curve)
-        case _:
-            return by_kind.get(quantity, stiffness)
+    if quantity in PLACES_OF_CONTACT:
+        return length(scene.beams[scene.contacts[contact].beams[0]].curve)
+    return by_kind.get(scene.stepped(stage).kind if quantity == "closing_load" else quantity, stiffness)
 
 
 def denominator(probe: Probe, reference: float, scale: float) -> float:
@@ -250,13 +242,21 @@ def denominator(probe: Probe, reference: float, scale: float) -> float:
 
 
 def _largest(scene: Scene, stage: Stage, answers: Sequence[Answer]) -> dict[str, float]:
-    """Largest norm of every probe at the stage's stations; values that are not finite do not count."""
-    stations = _stations(stage, answers)
-    values = {probe: [at.values[probe.name] for at in stations if probe.name in at.values] for probe in scene.probes}
+    """Largest size of every probe at the stage's stations."""
     return {
-        probe.name: max((norm(probe.quantity, value) for value in found if np.isfinite(value).all()), default=0.0)
-        for probe, found in values.items()
+        probe.name: max((_size(scene, probe, at) for at in _stations(stage, answers)), default=0.0)
+        for probe in scene.probes
     }
+
+
+def _size(scene: Scene, probe: Probe, station: StationAnswer) -> float:
+    """Norm of a probe at a station, of a stress at least the stress of the normal force; 0 if not finite or absent."""
+    values = station.values.get(probe.name, np.zeros(0))
+    if probe.quantity in STRESSES and probe.of in station.beams:
+        beam, state = scene.beams[probe.of], station.beams[probe.of]
+        thickness, width = (of(state.s / state.s[-1]) for of in (beam.thickness_at, beam.width_at))
+        values = np.append(values, state.N / (thickness * width))
+    return norm(probe.quantity, values) if np.isfinite(values).all() else 0.0
 
 
 def _stations(stage: Stage, answers: Sequence[Answer]) -> list[StationAnswer]:
@@ -278,11 +278,7 @@ def deflection(beam: Beam, shape: Shape) -> float:
     return float(np.max(np.hypot(shape.x[some] - rest[:, 0], shape.y[some] - rest[:, 1])))
 
 
-def _modulus(scene: Scene, beam: Beam) -> float:
-    return scene.materials[beam.material].youngs_modulus
-
-
 def _bending_stiffness(scene: Scene, beam: Beam) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """E·I (k,), N·m², at the knots between which the section varies linearly."""
     inertia = beam.width_at(beam.knots) * beam.thickness_at(beam.knots) ** 3 / 12.0
-    return np.asarray(_modulus(scene, beam) * inertia, dtype=float)
+    return np.asarray(scene.materials[beam.material].youngs_modulus * inertia, dtype=float)

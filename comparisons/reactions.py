@@ -154,9 +154,11 @@ class WorkEnergyReaction:
 
 def reaction_probe(drive: Drive) -> Probe:
     """The probe of a drive's force or moment."""
-    if isinstance(drive, DisplacementDrive):
-        return Probe(of=drive.point, quantity="reaction")
-    return Probe(of=drive.body, quantity="reaction_moment")
+    return (
+        Probe(of=drive.point, quantity="reaction")
+        if isinstance(drive, DisplacementDrive)
+        else Probe(of=drive.body, quantity="reaction_moment")
+    )
 
 
 def perturbed_scene(scene: Scene) -> Scene | None:

@@ -27,6 +27,8 @@ from functools import cache
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import split
 
 from comparisons.audit.state import PIECES, Complex, Finding, StationState
 from comparisons.formats import at_station
@@ -144,10 +146,26 @@ def _solid_at_rest(contact: Rigid, longest: float) -> shapely.Geometry:
     else:
         places, left = edge_places(contact, FAR * longest, PIECES), is_free_on_the_left(contact)
         if np.abs(places[0] - places[-1]).max() >= SMALL * np.ptp(places, axis=0).max():
-            return shapely.LineString(places).buffer(-depth if left else depth, single_sided=True).buffer(-smaller)
+            return _behind(places, -depth if left else depth).buffer(-smaller)
         disc = shapely.Polygon(places)
         hole = disc.exterior.is_ccw == left
     return (disc.buffer(depth) - disc if hole else disc).buffer(-smaller)
+
+
+def _behind(places: Array, depth: float) -> BaseGeometry:
+    """The solid up to a depth behind an open edge (k, 2), on the left of the edge where ``depth`` is positive.
+
+    Behind a needle the strip along one flank reaches out of the other flank.  The edge, straight beyond both ends,
+    divides the strip, and parts beside the free side of the edge alone are no solid.
+    """
+    strip = shapely.LineString(places).buffer(depth, single_sided=True)
+    size, onward = abs(depth) + np.hypot(*np.ptp(places, axis=0)), np.diff(places, axis=0)
+    onward /= np.hypot(*onward.T)[:, None]
+    whole = np.concatenate([places[:1] - size * onward[:1], places, places[-1:] + size * onward[-1:]])
+    middle, beside = 0.5 * (places[1:] + places[:-1]), SMALL * depth * onward[:, ::-1] * [-1.0, 1.0]
+    parts = shapely.get_parts(split(strip, shapely.LineString(whole)))
+    solid, free = (shapely.intersects(parts, shapely.multipoints(middle + way * beside)) for way in (1.0, -1.0))
+    return shapely.union_all(parts[solid | ~free])
 
 
 def crossings(scene: Scene, states: Sequence[StationState]) -> Iterator[str]:

@@ -18,9 +18,10 @@ g, x    dΠ/dx and x of the stepped loads or drive: -u and P, or F and d
 the discretisation.  A lever is known up to the distance of a chain's joints from the smooth line.
 
 *Section law.*  Between two places Δφ = ∫ M/(E·I) ds, with an error of up to h |ΔM|/(E·I), as M may step between both
-places, of h² |ΔQ| /(8 E·I) of a kink of M, and of the variation of E·I.  γ = Q/(GA_s) holds in the middle of all places
-that bear shear: beside held ends, forces and steps of Q γ is not uniform over the section.  The law is coarse on
-purpose: without a copy of any element the audit finds gross errors of the section alone.
+places, of h² |ΔQ| /(8 E·I) of a kink of M, and of the variation of E·I.  Forces at places stand for the pressure of a
+contact: M has a ripple of h |F|/8 with the forces F within h, all of M in a taut strip on a circle.  γ = Q/(GA_s) holds
+in the middle of all places that bear shear: beside held ends, forces and steps of Q γ is not uniform over the section.
+The law is coarse on purpose: without a copy of any element the audit finds gross errors of the section alone.
 
 *Probes.*  Stresses follow from the moment and the force of all forces beyond the place, everywhere along the beam.  The
 strain energy is ∫ M²/(2 E·I) + N²/(2 EA) + Q²/(2 GA_s) ds.  M is the moment of all forces beyond, corrected by the
@@ -61,7 +62,7 @@ from cprbm_scene import (
 )
 
 CLOSED = 1e-7
-"""Largest sum of forces or moments in equilibrium, over the largest force or moment."""
+"""Largest sum of forces or moments in equilibrium, over the largest force or moment, or all forces on the beam."""
 
 ROUND_OFF, ANGLE = 2e-14, 1e-9
 """Relative error of a rotation between neighbouring places: a hundred units in the last place; the largest, rad."""
@@ -129,7 +130,7 @@ def cuts(state: StationState) -> Iterator[Finding]:
     for name, beam in state.beams.items():
         s, stated = beam.state.s, (beam.state.N + 1j * beam.state.Q) * np.exp(1j * beam.state.angle)
         at_cut = nearby(state, name, s, BESIDE * beam.length)
-        force = np.abs(stated - state.beyond(name, s)[0]) - at_cut - floors(state)[0]
+        force = np.abs(stated - state.beyond(name, s)[0]) - at_cut - floors(state, name)[0]
         moment = np.abs(state.unbalance(name)) - moment_errors(state, name, s)
         for off, of in ((force, "force (N)"), (moment, "moment (N·m)")):
             yield (
@@ -144,7 +145,8 @@ def section_law(state: StationState) -> Iterator[Finding]:
         s, M, h, ripple = beam.state.s, beam.state.M, np.diff(beam.state.s), state.ripple(name)
         give = 1.0 / np.stack([beam.stiffness(at)[0] for at in (s[:-1], 0.5 * (s[1:] + s[:-1]), s[1:])])
         made = h * (give[0] * M[:-1] + 2.0 * give[1] * (M[1:] + M[:-1]) + give[2] * M[1:]) / 6.0
-        stepped = np.abs(np.diff(M)) + 0.125 * h * np.abs(np.diff(beam.state.Q)) + ripple
+        kinked = np.abs(np.diff(beam.state.Q)) + nearby(state, name, 0.5 * (s[1:] + s[:-1]), beam.h)
+        stepped = np.abs(np.diff(M)) + 0.125 * h * kinked + ripple
         varied = np.ptp(give, axis=0) * np.abs(M[1:] + M[:-1]) + SHARE * np.abs(made / h).max()
         off = np.abs(np.diff(beam.turned) - made) - h * (give.max(axis=0) * stepped + varied) - ANGLE
         yield off.max(), f"{name} at {s[np.argmax(off)]:.4g} m turns {off.max():.4g} rad off what its moments make"
@@ -171,8 +173,9 @@ def nearby(state: StationState, name: str, s: Array, reach: float) -> Array:
 
 
 def floors(state: StationState, name: str = "") -> tuple[float, float]:
-    """Largest force, N, and moment, N·m, that equilibrium may leave over, of all or of a beam."""
+    """Largest force, N, and moment, N·m, that equilibrium may leave over, of all or of a beam or a body."""
     force, moment = state.largest
+    force = max(force, float(np.abs(state.on[name]["force"]).sum()) if name in state.on else 0.0)
     rounding = ROUND_OFF * state.natural * max(len(beam.state.s) for beam in state.beams.values()) ** 2
     closed, moment = CLOSED * force, CLOSED * moment + rounding
     levered = state.lever(name) + state.ripple(name) if name in state.beams else 0.0

@@ -133,8 +133,7 @@ def case_chapter(compared: Compared, figures: Sequence[Figure], further: Sequenc
     else:
         names = ["comparison.json", "answers.json.gz", _CONTACT_FORCES]
         claims, steps = [(*row[:4], row[-1]) for row in claims_table(compared).rows], stepper(compared)
-        known = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
-        shares = [(row.difference / row.scale, row.probe.name) for row in known]
+        shares = [(row.difference / row.scale, row.probe.name) for row in compared.rows if row.bounds is not None]
         share, probe = max(shares, key=lambda each: each[0], default=(None, "–"))
         largest = percent(share), probe
     met = f"{sum(row[-1] == 'met' for row in claims)} of {len(claims)}" if claims else "–"
@@ -169,8 +168,9 @@ def light(section: Section) -> Section:
 
 def html(page: Page) -> str:
     """The page as HTML."""
-    further = {"script": _beside("report.js"), "headers": HEADERS, "shades": range(SHADES)}
-    return rendered("page.html", {"page": page, **further})
+    return rendered(
+        "page.html", {"page": page, "script": _beside("report.js"), "headers": HEADERS, "shades": range(SHADES)}
+    )
 
 
 def rendered(template: str, context: Mapping[str, object]) -> str:

@@ -129,9 +129,8 @@ class Family:
 
     def error(self, n: int) -> Array | None:
         """Distances (k,) within which the values at N lie from the true limit."""
-        if self.found is None or n not in self.used:
-            return None
-        return np.asarray(np.abs(self.values[n] - self.found.value) + self.found.uncertainty)
+        known = self.found if n in self.used else None
+        return None if known is None else np.asarray(np.abs(self.values[n] - known.value) + known.uncertainty)
 
     def apart(self, n: int) -> float | None:
         """Norm of the distance of the values at N from the limit."""

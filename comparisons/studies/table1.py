@@ -38,9 +38,8 @@ class Cell(NamedTuple):
     @property
     def label(self) -> str:
         """Method, and whether with contact."""
-        if self.method == "fea":
-            return "FEA, contact" if self.contact else "FEA without contact"
-        return f"CPRBM {self.formulation}"
+        of_fea = "FEA, contact" if self.contact else "FEA without contact"
+        return of_fea if self.method == "fea" else f"CPRBM {self.formulation}"
 
     @property
     def size_text(self) -> str:

@@ -14,6 +14,9 @@ W       ``verdict_limit`` of the scene times the span of the stage
 differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c − λ_f| > max(T, U).  It is undecided if
 runs of one solver disagree, or U > T, or, in ``bending``, θ > max(T, W).  It agrees otherwise.
 
+A fold of one solver and a bifurcation of the other at |λ_c − λ_f| ≤ U are undecided: the loads agree, and the kind of
+the critical point is open.  An answer states no mode that could tell whether both are one point.
+
 The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
 stage without ``beyond`` a run may pass a critical point and go on along another branch.  A passed critical point stands
 in for a missing critical point, and the row is undecided.
@@ -51,6 +54,9 @@ MIRRORED = "mirror images"
 
 MIRROR_DISTANCE = 0.05
 """Least distance of beams on mirror images, a share of their largest distance from rest."""
+
+UNSTABLE = {Loss.FOLD, Loss.BIFURCATION}
+"""Kinds of critical points at which the smallest curvature reaches zero, and nothing lets go."""
 
 State = Mapping[str, int]
 """Parts of a run's state at a station, a contact's 1 where the contact is active."""
@@ -102,6 +108,7 @@ class CriticalRow:
         rules: tuple[tuple[bool, tuple[Word, Reason | None]], ...] = (
             (disagree_within_a_solver(self.mechanisms), (Word.UNDECIDED, Reason.BRANCH)),
             (self.ended_before, (Word.UNDECIDED, Reason.RUN_ENDED)),
+            (self.kind_open, (Word.UNDECIDED, Reason.BRANCH)),
             (None in pair or pair[0] != pair[1], (Word.DIFFER, Reason.EVENTS)),
             (self.bounds is None, (Word.UNDECIDED, Reason.RUN_ENDED)),
             (self.difference > max(self.allowed, total), (Word.DIFFER, Reason.EVENTS)),
@@ -110,6 +117,12 @@ class CriticalRow:
             (self.theory > self.largest, (Word.UNDECIDED, Reason.THEORY)),
         )
         return first_met(rules, (Word.AGREE, None))
+
+    @property
+    def kind_open(self) -> bool:
+        """Whether one solver has a fold and the other solver a bifurcation, at loads that agree."""
+        pair = {one and one.loss for one in (self.cprbm, self.fea)}
+        return pair == UNSTABLE and self.bounds is not None and self.difference <= self.bounds.total
 
     @property
     def word(self) -> Word:
@@ -133,9 +146,7 @@ def released(critical: Critical) -> float | None:
 
     A bifurcation with an energy that falls by less than the round-off of both energies releases none.
     """
-    if critical.after is None:
-        return None
-    fall = critical.energy - critical.after
+    fall = 0.0 if critical.after is None else critical.energy - critical.after
     return fall if fall > CONTINUES * abs(critical.energy) else None
 
 

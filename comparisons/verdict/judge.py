@@ -104,9 +104,8 @@ def _without_value(scene: Scene, row: Row) -> Judged:
     """Judgement of a row without a value in some run: an open contact has no place, and its force decides."""
     everywhere = row.cprbm.size == 0 and row.fea.size == 0 and (row.exact is None or row.exact.size == 0)
     asked = any(probe.of == row.probe.of and probe.quantity == "force" for probe in scene.probes)
-    if row.probe.quantity in ABSENT_WHILE_OPEN and (everywhere or asked):
-        return None, None
-    return Word.UNDECIDED, Reason.EVENT
+    decided = row.probe.quantity in ABSENT_WHILE_OPEN and (everywhere or asked)
+    return (None, None) if decided else (Word.UNDECIDED, Reason.EVENT)
 
 
 def _is_notable(runs: Runs, row: Row) -> bool:
@@ -180,9 +179,7 @@ class ErrorRatio:
     @property
     def word(self) -> str:
         """Position of the true error: ``within``, ``beyond`` or ``far beyond`` the stated uncertainty."""
-        if self.ratio <= 1.0:
-            return "within"
-        return "beyond" if self.pressure <= 1.0 else "far beyond"
+        return first_met([(self.ratio <= 1.0, "within"), (self.pressure <= 1.0, "beyond")], "far beyond")
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,9 @@ v_c     value of the CPRBM, v_f of the finite elements; v_a of the CPRBM in the 
 v_o     value of the CPRBM in ``auto`` in the other theory
 θ       |v_o − v_a|, the step of theory, both at N links: their errors of discretisation cancel
 x       exact value, where the comparison is in ``bending`` and the elastica reference has the station
-q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
+q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale; the root of this share for a place
+        of contact at an end of the beam in the exact answer alone, since the overlap inside of the beam that moves the
+        exact place grows with the square of the distance from the end
 ======  ==========================================================================================
 
 A probe has one stated uncertainty per solver, stage and branch: the largest of the stations.  An error changes its sign
@@ -21,7 +23,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, denominator, norm, probe_scales, unit_of
+from comparisons.quantities import (
+    OPEN_AT_ZERO,
+    PLACES_OF_CONTACT,
+    arc_lengths,
+    denominator,
+    norm,
+    probe_scales,
+    unit_of,
+)
 from comparisons.stations import Where, complete_stations
 from comparisons.verdict.events import NO_EVENTS, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
@@ -129,9 +139,7 @@ class Row:
 
     def fraction(self, value: float) -> float | None:
         """``value`` over the denominator; None without a finite quotient."""
-        if not math.isfinite(value):
-            return None
-        if self.denominator > 0.0:
+        if math.isfinite(value) and self.denominator > 0.0:
             return value / self.denominator
         return 0.0 if value == 0.0 else None
 
@@ -233,8 +241,12 @@ def _measured(
 def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], float]) -> TrueErrors | None:
     if exact is None or row.exact is None or row.exact.shape != row.fea.shape:
         return None
-    allowance = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF) * row.scale
-    return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), allowance)
+    share = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
+    if row.probe.quantity in PLACES_OF_CONTACT:
+        answers = np.stack((row.exact, row.cprbm, row.fea))
+        at_end = np.minimum(answers, row.scale - answers) <= ROUND_OFF * row.scale
+        share = math.sqrt(share) if np.any(at_end[0] & ~at_end[1:].any(axis=0)) else share
+    return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), share * row.scale)
 
 
 def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:

@@ -6,7 +6,7 @@ Faults are planted in right answers.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -174,6 +174,57 @@ def test_round_solids_stay_quiet(edge):
     assert answer.completed, answer.sentence
     assert answer.stations[-1].values["edge.force"][0] > 0.0
     assert audit(scene, answer).complaints == ()
+
+
+def on_a_needle(depth):
+    """A beam pressed on a needle at 0.55 of the length, whose tip stands a ``depth`` in lengths below the beam."""
+    x, y = 0.55, -depth - 0.5 * THICKNESS / LENGTH
+    flanks = LENGTH * np.array([[x - 0.02, y - 0.2], [x, y], [x + 0.02, y - 0.2]])
+    data = cantilever_data(force(0.0, -1.0), [])
+    needle = {"kind": "beam-line", "beam": "beam", "body": "wall", "points": flanks.tolist(), "side": "left"}
+    data["contacts"], data["loads"] = {"needle": needle}, {}
+    data["drives"] = {"P": {"kind": "displacement", "point": "T", "direction": [0.0, -1.0]}}
+    data["stages"][0]["stations"] = [0.1 * LENGTH, 0.25 * LENGTH]
+    return scene_from(data)
+
+
+def test_a_beam_beside_a_needle_penetrates_only_if_it_cuts_the_needle():
+    scene, lower = on_a_needle(0.01), on_a_needle(0.04)
+    right, wrong = map(SOLVERS["cprbm"], (scene, lower))
+    assert right.completed, right.sentence
+    assert audit(scene, right).complaints == ()
+    said = audit(scene, wrong).complaints
+    assert any("penetrates its partner in needle" in sentence for sentence in said), said
+
+
+FINE = fea_reference.Settings(elements=160, kinematics="bending")
+
+
+@pytest.mark.parametrize(
+    "solve", [SOLVERS["cprbm"], partial(fea_reference.answer, settings=FINE)], ids=["cprbm", "fea"]
+)
+def test_a_taut_strip_on_a_circle_has_the_moments_of_its_mesh_alone(solve):
+    """Drawn on the circle and pulled along the tangent, by a faint and a larger force: no section bends."""
+    angle, radius = 1.571, LENGTH
+    tip, data = (
+        [radius * np.cos(angle), radius * np.sin(angle)],
+        cantilever_data(force(-np.sin(angle), np.cos(angle)), []),
+    )
+    data["bodies"]["wall"]["points"]["R"], data["bodies"]["tip"]["points"]["T"] = [radius, 0.0], tip
+    curve = {"kind": "arc", "center": [0.0, 0.0], "start": [radius, 0.0], "end": tip, "direction": "counterclockwise"}
+    data["beams"]["beam"]["curve"] = curve
+    disc = {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": [0.0, 0.0]}
+    data["contacts"] = {"disc": {**disc, "radius": radius - 0.5 * THICKNESS}}
+    data["stages"][0]["stations"] = [share * RIGIDITY / LENGTH**2 for share in (2e-3, 2e-2)]
+    scene = scene_from(data)
+    answer = solve(scene)
+    assert answer.completed, answer.sentence
+    assert audit(scene, answer).complaints == ()
+    # a moment of half of what the force makes about the circle's middle is none of the mesh
+    last = answer.stations[-1]
+    state = replace(last.beams["beam"], M=last.beams["beam"].M + 0.5 * last.value * radius)
+    bent = replace(answer, stations=(replace(last, beams={"beam": state}),))
+    assert any("its moments make" in sentence for sentence in audit(scene, bent).complaints)
 
 
 def test_an_answer_of_a_single_element_is_audited():

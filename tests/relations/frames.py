@@ -18,7 +18,7 @@ A polynomial stays one only where Q takes the axes to axes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin
+from math import atan2, cos, sin
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -168,8 +168,14 @@ class Frame:
             case "beam-circle":
                 contact["center"] = self.placed(contact["center"])
                 contact["radius"] *= self.length
-            case "beam-line":
-                contact["points"] = [self.placed(place) for place in contact["points"]]
+            case "beam-ellipse":
+                contact["center"] = self.placed(contact["center"])
+                contact["semi_axes"] = [self.length * each for each in contact["semi_axes"]]
+                angle = contact.get("angle", 0.0)
+                x, y = self.turned([cos(angle), sin(angle)])
+                contact["angle"] = atan2(y, x)
+            case "beam-line" | "beam-spline":
+                contact.update(self._curve(contact))
                 if self.sense < 0.0:
                     contact["side"] = OTHER_WAY[contact["side"]]
             case "beam-half-plane":

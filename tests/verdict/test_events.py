@@ -74,7 +74,9 @@ def in_shear(**change):
         (replace(C, late=-radians(0.2)), F, "AGREE"),
         (C, replace(F, late=radians(0.4)), "DIFFER EVENTS"),
         (replace(C, late=-radians(0.4)), F, "DIFFER EVENTS"),
-        (replace(C, **BIFURCATES), F, "DIFFER EVENTS"),
+        (replace(C, **BIFURCATES), F, "UNDECIDED BRANCH"),
+        (C, replace(F, **BIFURCATES), "UNDECIDED BRANCH"),
+        (replace(C, late=radians(0.02), **BIFURCATES), F, "DIFFER EVENTS"),
         (replace(C, loss=Loss.CONTACT, what="contact"), F, "DIFFER EVENTS"),
         (replace(C, loss=Loss.STOP, what="stopB"), replace(F, loss=Loss.STOP, what="stopB"), "AGREE"),
         (replace(C, loss=Loss.STOP, what="stopB"), replace(F, loss=Loss.STOP, what="stopC"), "DIFFER EVENTS"),
@@ -95,7 +97,9 @@ def in_shear(**change):
         "0.2° early",
         "0.4° late",
         "0.4° early",
-        "mechanism",
+        "kind",
+        "kind in the finite elements",
+        "kind at another load",
         "contact",
         "same stop",
         "another stop",
@@ -118,6 +122,13 @@ def test_the_word_of_a_critical_point(crank, cprbm, fea, word):
     said = {" ".join(each.value for each in row.judged if each is not None) for row in found.criticals}
     assert said == {word}
     assert set(counted(found)) == {"AGREE"}
+
+
+def test_the_sentence_names_both_kinds_at_one_load(forward):
+    sentence = compared(forward, replace(C, **BIFURCATES), F).verdict.sentence
+    assert "(bifurcation) in the CPRBM and" in sentence
+    assert "(fold) in the finite elements" in sentence
+    assert "the loads agree, the kinds of the critical point do not: UNDECIDED" in sentence
 
 
 @pytest.mark.parametrize(("beyond", "word"), [(0, "UNDECIDED RUN_ENDED"), (1, "DIFFER EVENTS")])
@@ -244,11 +255,11 @@ def test_a_mesh_that_jumps_early_states_no_jump_as_an_uncertainty(crank):
     [
         (STOPS, STOPS, "AGREE", True),
         (STOPS, {**STOPS, "late": radians(0.4)}, "DIFFER EVENTS", False),
-        (STOPS, {**STOPS, **BIFURCATES}, "DIFFER EVENTS", False),
+        (STOPS, {**STOPS, **BIFURCATES}, "UNDECIDED BRANCH", False),
         ({**STOPS, "stiffness": 1.02}, STOPS, "DIFFER VALUES", True),
         (STOPS, {}, "DIFFER EVENTS", False),
     ],
-    ids=["same", "later", "mechanism", "fault before", "one goes on"],
+    ids=["same", "later", "kind", "fault before", "one goes on"],
 )
 def test_solvers_that_stop_at_a_critical_point(crank, cprbm, fea, word, completed):
     found = compared(crank, replace(C, **cprbm), replace(F, **fea))
@@ -335,9 +346,10 @@ def test_within_a_tolerance_of_a_passed_point_a_contradiction_is_undecided(forwa
     [
         ({**BIFURCATES, "side": -1.0}, "UNDECIDED BRANCH"),
         ({**BIFURCATES, "stiffness": 1.02}, "DIFFER VALUES"),
-        ({"side": -1.0}, "DIFFER EVENTS"),
+        ({"side": -1.0}, "UNDECIDED BRANCH"),
+        ({"side": -1.0, "late": radians(0.02)}, "DIFFER EVENTS"),
     ],
-    ids=["image", "fault", "image of another mechanism"],
+    ids=["image", "fault", "image behind a fold", "image behind a fold elsewhere"],
 )
 def test_mirror_images_behind_a_bifurcation_are_no_contradiction(crank, fea, word):
     found = compared(crank, replace(C, **BIFURCATES), replace(F, **fea))

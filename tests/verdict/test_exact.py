@@ -87,6 +87,25 @@ def test_words_beside_the_exact_answer(hinge, exact, cprbm, fea, word, sentence)
     assert sentence in found.verdict.sentence
 
 
+@pytest.mark.parametrize(
+    ("exact", "cprbm", "fea", "word"),
+    [
+        (1.0, 1e-6, 1e-6, "AGREE"),
+        (0.0, 1e-6, 1e-6, "AGREE"),
+        (1.0, 0.0, 1e-6, "DIFFER EXACT"),
+        (1.0, 1e-4, 1e-4, "DIFFER EXACT"),
+        (0.5, 1e-6, 1e-6, "DIFFER EXACT"),
+    ],
+)
+def test_an_exact_place_at_an_end_of_a_beam_is_known_to_the_root_of_round_off(hinge, exact, cprbm, fea, word):
+    """Unless a solver has the place at the end as well; ``cprbm`` and ``fea`` are shares of the length beside."""
+    length = np.pi * 0.025
+    true, *found = (with_value("contact.centre", [length * abs(exact - off)]) for off in (0.0, cprbm, fea))
+    solvers = (MadeUp(solver, 0.0, spoilt=spoilt) for solver, spoilt in zip(("cprbm", "fea"), found, strict=True))
+    compared = beside(hinge, replace(EXACT, spoilt=true), *solvers)
+    assert word_of(compared) == word, compared.verdict.sentence
+
+
 def test_a_place_in_truth_alone_is_undecided(hinge):
     place = hinge.model_copy(update={"probes": tuple(p for p in hinge.probes if p.name == "contact.centre")})
     assert word_of(beside(place, replace(EXACT, contact=False))) == "UNDECIDED EVENT"

@@ -15,7 +15,7 @@ from comparisons.choices import Choices
 from comparisons.quantities import probe_scales
 from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources, zone_ends
 from cprbm_scene import Probe, Stage
-from cprbm_scene.answer import PointForces, frozen_array
+from cprbm_scene.answer import BeamState, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 from tests.verdict.made_up import MadeUp
 
@@ -106,6 +106,18 @@ def test_where_nothing_happens_the_scale_is_a_share_of_the_natural_value(hinge, 
     asked = (*hinge.probes, Probe(of="C", quantity="displacement"))
     found = scales(hinge.model_copy(update={"stages": (still,), "probes": asked, "claims": ()}), {})
     assert found["load", name] == pytest.approx(scale, rel=1e-9)
+
+
+@pytest.mark.parametrize(("tension", "scale"), [(800.0, 5e7), (-800.0, 5e7), (0.0, 5e5)])
+def test_a_stress_has_at_least_the_stress_of_the_normal_force(hinge, tension, scale):
+    """800 N on 8 mm times 2 mm, and a bending stress of 0.5 MPa."""
+    answer = MadeUp("fea", 0.0, contact=False)(hinge, Choices(kinematics="bending"))
+    s, zero = np.linspace(0.0, LENGTH, 3), np.zeros(3)
+    state = BeamState(s, zero, zero, zero, zero, np.array([0.0, tension, 0.0]), zero, zero, s)
+    bent = frozendict({**answer.stations[-1].values, "beam1.bending_stress": frozen_array([5e5])})
+    station = replace(answer.stations[-1], values=bent, beams=frozendict({"beam1": state}))
+    found = probe_scales(hinge, (replace(answer, stations=(station,)),))["load", "beam1.bending_stress"]
+    assert found == pytest.approx(scale, rel=1e-9)
 
 
 def test_a_value_that_is_not_finite_is_no_scale(hinge):
