@@ -221,9 +221,13 @@ def probes(state: StationState) -> Iterator[Finding]:
         off = np.abs(given - value) - allowed if given.shape == value.shape else np.array([np.nan])
         if off.size:
             i = int(np.argmax(np.nan_to_num(off, nan=np.inf)))
-            here = slice(i, i + 1)  # NumPy prints in longer than the check takes
-            said = "" if off[i] <= 0.0 else f"{given[here]} where the stated forces and shape make {value[here]}"
-            yield off[i], f"{probe.name} is {said}"
+            yield (
+                off[i],
+                # NumPy prints arrays in longer than the check takes
+                ""
+                if off[i] <= 0.0
+                else f"{probe.name} is {given[i : i + 1]} where the stated forces and shape make {value[i : i + 1]}",
+            )
 
 
 def _expected(state: StationState, probe: Probe) -> tuple[Array, Array | float] | None:

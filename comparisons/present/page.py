@@ -6,13 +6,12 @@ files of further sections, and all figures as SVG and PNG.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from errno import EPERM
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from comparisons.answer_file import packed
@@ -28,9 +27,6 @@ from comparisons.present.stepper import HEADERS, SHADES, stations_json, stepper
 from comparisons.present.table import STYLES, html_cells
 from comparisons.writing import text_of, write
 from cprbm_scene import Question
-
-if TYPE_CHECKING:
-    import jinja2
 
 _CONTACT_FORCES = "contact-forces.csv"
 
@@ -174,8 +170,9 @@ def light(section: Section) -> Section:
 
 def html(page: Page) -> str:
     """The page as HTML."""
-    further = {"script": _beside("report.js"), "headers": HEADERS, "shades": range(SHADES)}
-    return rendered("page.html", {"page": page, **further})
+    return rendered(
+        "page.html", {"page": page, "script": _beside("report.js"), "headers": HEADERS, "shades": range(SHADES)}
+    )
 
 
 def rendered(template: str, context: Mapping[str, object]) -> str:
@@ -184,18 +181,18 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     Raises:
         jinja2.UndefinedError: the context lacks a name of the template.
     """
-    return environment().get_template(template).render(context, style=_beside("style.css"), marked=STYLES) + "\n"
+    return renderer(template)(context, style=_beside("style.css"), marked=STYLES) + "\n"
 
 
 @cache
-def environment() -> "jinja2.Environment":
-    """The templates of all pages, compiled once, and their filters."""
+def renderer(template: str) -> Callable[..., str]:
+    """Function that fills a template in; the template is compiled once."""
     import jinja2
 
-    found = jinja2.Environment(
+    environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, loader=jinja2.PackageLoader("comparisons", "pages")
     )
-    found.filters |= {
+    environment.filters |= {
         "anchor": lambda name: name.replace(" ", "+"),  # an identifier has no spaces, and a name no plus
         "cells": html_cells,
         # as text a picture is a quarter shorter than in base64; without quotes and ampersands the text cannot leave an
@@ -208,7 +205,7 @@ def environment() -> "jinja2.Environment":
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
         "joined": lambda sentence: sentence.replace(" %", "\u00a0%"),  # on the line of the number
     }
-    return found
+    return environment.get_template(template).render
 
 
 def _beside(name: str) -> str:

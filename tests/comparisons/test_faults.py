@@ -164,7 +164,7 @@ def test_a_library_that_is_not_there_is_named_with_what_installs_it(tmp_path, as
     for module in [name for name in sys.modules if name.partition(".")[0] == library]:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, library, None)
-    page.environment.cache_clear()
+    page.renderer.cache_clear()
     solvers = Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
     quiet = [] if library == "rich" else ["--quiet"]
     assert run(["compare", asked[0], *quiet, "--out", str(tmp_path / "r")], solvers) == 2

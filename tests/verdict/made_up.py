@@ -101,7 +101,7 @@ class MadeUp:
         shapes = {}
         for name, beam in scene.beams.items():
             s, line, bow = _at_rest(beam.curve)
-            x, y = line + reach * bow
+            x, y = line + 0.01 * reach * bow
             shapes[name] = Shape(s, frozen_array(x), frozen_array(y))
         places = frozen_array([[shapes[first].x[20], shapes[first].y[20] - 0.001]])
         nowhere = frozen_array(np.zeros((0, 2)))
@@ -119,9 +119,9 @@ class MadeUp:
 
 @cache
 def _at_rest(curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Arc lengths (41,) of a beam, the places at rest (2, 41), and their change (2, 41) at the load one."""
+    """Arc lengths (41,) of a beam, the places at rest (2, 41), and the shape (2, 41) of their change."""
     s = np.linspace(0.0, length(curve), 41)
-    return frozen_array(s), points(curve, s).T, 0.01 * np.outer([1.0, 1.5], (s / s[-1]) ** 2)
+    return frozen_array(s), points(curve, s).T, np.outer([1.0, 1.5], (s / s[-1]) ** 2)
 
 
 def _pressing(scene: Scene, s: float, force: float) -> PointForces:
