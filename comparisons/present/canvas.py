@@ -214,16 +214,20 @@ def _palette_png(png: bytes) -> bytes:
     from PIL import Image
 
     stream = io.BytesIO()
-    picture = Image.open(io.BytesIO(png)).convert("RGB")
-    picture.quantize(64, dither=Image.Dither.NONE).save(stream, "png")
+    Image.open(io.BytesIO(png)).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(stream, "png")
     return stream.getvalue()
 
 
 def image(drawing: Drawing, kind: str, dots: float | None = None, box: Bbox | None = None) -> bytes:
     """The drawing, or a ``box`` of it in inches, as ``svg`` or ``png`` without dates, with ``dots`` to the inch."""
     stream = io.BytesIO()
-    metadata = {"Date" if kind == "svg" else "Software": None}
-    drawing.savefig(stream, format=kind, metadata=metadata, dpi=dots or _STYLE["savefig.dpi"], bbox_inches=box)
+    drawing.savefig(
+        stream,
+        format=kind,
+        metadata={"Date" if kind == "svg" else "Software": None},
+        dpi=dots or _STYLE["savefig.dpi"],
+        bbox_inches=box,
+    )
     return stream.getvalue()
 
 

@@ -6,9 +6,10 @@ files of further sections, and all figures as SVG and PNG.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from errno import EPERM
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from urllib.parse import quote
@@ -179,6 +180,12 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     Raises:
         jinja2.UndefinedError: the context lacks a name of the template.
     """
+    return renderer(template)(context, style=_beside("style.css"), marked=STYLES) + "\n"
+
+
+@cache
+def renderer(template: str) -> Callable[..., str]:
+    """Function that fills a template in; the template is compiled once."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -197,7 +204,7 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
         "joined": lambda sentence: sentence.replace(" %", "\u00a0%"),  # on the line of the number
     }
-    return environment.get_template(template).render(context, style=_beside("style.css"), marked=STYLES) + "\n"
+    return environment.get_template(template).render
 
 
 def _beside(name: str) -> str:

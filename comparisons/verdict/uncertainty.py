@@ -220,7 +220,7 @@ def _assumed(n: Array, v: Array, order: float, floor: float) -> tuple[float, flo
         return min(order, STANDARD), None, "two sizes show no order"
     three = sorted((_third(n), _coarse(n), len(n) - 1))
     q, why = observed(n[three], v[three], floor)
-    fall = STANDARD if why in (_ROUND_OFF, _SUDDEN) else _fall(n[three], v[three])
+    fall = STANDARD if why in (_ROUND_OFF, _SUDDEN) else _fall(n[three], v[three]) if q is None else q
     own = q is not None and abs(q - order) <= _NEAR * order
     return order if own else min(order, STANDARD if fall >= _SHOWN * STANDARD else 1.0), q, why
 

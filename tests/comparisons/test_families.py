@@ -177,7 +177,6 @@ def test_every_table_has_as_many_cells_as_headers(hinge, right):
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
 
 
-@pytest.mark.usefixtures("printed")
 def test_the_command_writes_prints_and_ends_with_0(right, capsys, tmp_path):
     arguments = ["converge", "hinge", "--sizes", "10,20,40", "--theory", "bending"]
     assert run([*arguments, "--out", str(tmp_path / "c"), "--json", str(tmp_path / "c.json")], right) == 0

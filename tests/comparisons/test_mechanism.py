@@ -10,8 +10,6 @@ import comparisons
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 
-pytestmark = pytest.mark.usefixtures("printed")
-
 FEW = Choices(links=10, elements=10)
 
 
@@ -94,6 +92,7 @@ def test_a_notebook_shows_table_and_drawing(tapered, compared, tmp_path):
         compared.plot(tmp_path / "both.tiff")
 
 
+@pytest.mark.usefixtures("printed")
 @pytest.mark.parametrize("command", ["solve", "compare"])
 def test_the_program_writes_table_and_drawing(right, tmp_path, command):
     table, drawing = tmp_path / "new" / "a.csv", tmp_path / "new" / "a.svg"

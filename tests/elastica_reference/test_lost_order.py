@@ -15,7 +15,7 @@ def test_places_that_have_come_past_each_other_are_no_state():
     """Reference: the finite elements, of fourth order in an element."""
     scene = read(SCENE)
     found = elastica_reference.answer(scene, elastica_reference.Settings())
-    beside = fea_reference.answer(scene, fea_reference.Settings(elements=80, kinematics="bending", penetration=1e-6))
+    beside = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending", penetration=1e-6))
     assert found.completed, found.sentence
     energy = "scene.potential_energy"
     for mine, its in zip(found.stations, beside.stations, strict=True):

@@ -311,6 +311,7 @@ def _equilibrium(
     prescribed[m - len(drives) :] = [values.get(name, 0.0) for name in drives]
     mu = np.zeros(m)
     force = max(float(np.abs(K).max()), 1e-300)
+    matrix, right = np.zeros((n + m, n + m)), np.empty(n + m)
     for _ in range(_ITERATIONS):
         A, c = held.slopes(q), held.at(q) - prescribed
         diagonal = mu @ held.bends(q)
@@ -323,9 +324,10 @@ def _equilibrium(
             pushed, stiffer = _held_off(model, q, barrier)
             gradient, H = gradient + pushed, H + stiffer
         # all rows in one unit: lengths over the size, and forces over the stiffest spring
-        matrix = np.block([[H / force, A.T / model.size], [A / model.size, np.zeros((m, m))]])
+        matrix[:n, :n], matrix[:n, n:], matrix[n:, :n] = H / force, A.T / model.size, A / model.size
+        right[:n], right[n:] = gradient / force, c / model.size
         try:
-            step = np.linalg.solve(matrix, -np.concatenate([gradient / force, c / model.size]))
+            step = np.linalg.solve(matrix, -right)
         except np.linalg.LinAlgError:
             return None
         dq = step[:n]

@@ -228,14 +228,14 @@ def is_clear(model: Estimate, obstacle: Obstacle, beams: Sequence[str], spot: Sp
 
 def _from_pieces(points: Array, p: Array) -> Array:
     """Distances of places (k, 2) from a line of straight pieces, negative where they are behind it, on its right."""
-    a, ab = points[:-1], np.diff(points, axis=0)
+    a, ab = points[:-1], points[1:] - points[:-1]
     r = p[:, None, :] - a
     t = np.clip((r * ab).sum(axis=2) / (ab * ab).sum(axis=1), 0.0, 1.0)
     away = r - t[:, :, None] * ab
     nearest = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1)
     every = np.arange(len(p))
     away, t = away[every, nearest], t[every, nearest]
-    n = np.column_stack((-ab[:, 1], ab[:, 0])) / np.hypot(ab[:, 0], ab[:, 1])[:, None]
+    n = np.array((-ab[:, 1], ab[:, 0])).T / np.hypot(ab[:, 0], ab[:, 1])[:, None]
     closed = len(points) > 2 and bool(np.all(points[0] == points[-1]))
     other = np.where(t <= 0.0, nearest - 1, np.where(t >= 1.0, nearest + 1, nearest))
     beyond = np.zeros(len(p), bool) if closed else (other < 0) | (other >= len(ab))

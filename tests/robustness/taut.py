@@ -142,10 +142,9 @@ def _outside(p: Array, barrier: Barrier, size: float) -> Array:
         deep = np.flatnonzero(within > 0.0)
         if not deep.size:
             break
-        step = 1e-6 * size
-        rise = np.stack(
-            [barrier.distance(p[deep] + step * e) - barrier.distance(p[deep] - step * e) for e in np.eye(2)], axis=1
-        )
+        beside = 1e-6 * size * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+        d = barrier.distance((p[deep] + beside[:, None]).reshape(-1, 2)).reshape(4, -1)  # a single call is faster
+        rise = (d[::2] - d[1::2]).T
         rise /= np.maximum(np.hypot(*rise.T), 1e-300)[:, None]
         p[deep] += within[deep, None] * rise
     return p

@@ -5,7 +5,7 @@ import pytest
 from comparisons import cases
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def hinge():
     return cases.opened("hinge")
 

@@ -22,6 +22,10 @@ from tests.verdict.made_up import THEORY, MadeUp
 FORWARD, BACK = radians(70.4), radians(25.3)
 """Ends of the first branch forwards and of the second branch on the way back, rad."""
 
+U = np.linspace(0.0, 1.0, 41)
+HERMITE = np.stack((2.0 * U**3 - 3.0 * U**2 + 1.0, U**3 - 2.0 * U**2 + U, 3.0 * U**2 - 2.0 * U**3, U**3 - U**2))
+"""Cubic shares (4, 41) of the place and the tangent at the start, and of both at the end."""
+
 FALL = 0.3
 """Released energy of a jump forwards, J."""
 
@@ -120,7 +124,6 @@ class Jumping:
 
 def _shapes(scene: Scene, alpha: float, away: int) -> dict[str, Shape]:
     """Cubic curves from the starts of the beams to the pins on the crank; the side of the bulge changes at the jump."""
-    u = np.linspace(0.0, 1.0, 41)[:, None]
     turn = np.array([[cos(alpha), -sin(alpha)], [sin(alpha), cos(alpha)]])
     found = {}
     for place, (name, beam) in enumerate(scene.beams.items()):
@@ -131,12 +134,7 @@ def _shapes(scene: Scene, alpha: float, away: int) -> dict[str, Shape]:
         end = pivot + turn @ (np.array(crank.points[beam.end.point]) - pivot)
         leaves = length(beam.curve) * np.array([0.0, 1.3])
         arrives = turn @ np.array([0.08, 0.03]) * (1.0 - 2.0 * ((place + away) % 2 == 0))
-        x, y = (
-            (2.0 * u**3 - 3.0 * u**2 + 1.0) * start
-            + (u**3 - 2.0 * u**2 + u) * leaves
-            + (3.0 * u**2 - 2.0 * u**3) * end
-            + (u**3 - u**2) * arrives
-        ).T
-        s = np.linspace(0.0, length(beam.curve), 41)
+        x, y = np.stack((start, leaves, end, arrives), axis=1) @ HERMITE
+        s = length(beam.curve) * U
         found[name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
     return found

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
-from cprbm_scene import Answer, Certificate, Ending, Event, Scene, Shape, StationAnswer
+from cprbm_scene import Answer, Certificate, Curve, Ending, Event, Scene, Shape, StationAnswer
 from cprbm_scene.answer import ContactState, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
@@ -99,9 +100,9 @@ class MadeUp:
             values[probe.name] = frozen_array(found)
         shapes = {}
         for name, beam in scene.beams.items():
-            s = np.linspace(0.0, length(beam.curve), 41)
-            x, y = points(beam.curve, s).T + 0.01 * reach * np.outer([1.0, 1.5], (s / s[-1]) ** 2)
-            shapes[name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
+            s, line, bow = _at_rest(beam.curve)
+            x, y = line + 0.01 * reach * bow
+            shapes[name] = Shape(s, frozen_array(x), frozen_array(y))
         places = frozen_array([[shapes[first].x[20], shapes[first].y[20] - 0.001]])
         nowhere = frozen_array(np.zeros((0, 2)))
         return StationAnswer(
@@ -114,6 +115,13 @@ class MadeUp:
             forces=_pressing(scene, 0.5 * total + shift, 20.0 * push) if closed else PointForces(),
             contacts=frozendict({name: ContactState(closed, places if closed else nowhere) for name in scene.contacts}),
         )
+
+
+@cache
+def _at_rest(curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Arc lengths (41,) of a beam, the places at rest (2, 41), and the shape (2, 41) of their change."""
+    s = np.linspace(0.0, length(curve), 41)
+    return frozen_array(s), points(curve, s).T, np.outer([1.0, 1.5], (s / s[-1]) ** 2)
 
 
 def _pressing(scene: Scene, s: float, force: float) -> PointForces:
