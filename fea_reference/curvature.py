@@ -91,10 +91,11 @@ def softest(model: Model, system: System) -> Mode:
 
 
 def moment_mode(model: Model, system: System, drag: float) -> Array:
-    """Motion u (size,) under small moments 1 + s per length on all sections, against a ``drag`` (EI per length⁴).
+    """Motion u (size,) under small moments (1 + s)² per length on all sections, against a ``drag`` (EI per length⁴).
 
     s is the arc length along the beams in the scene's order, in lengths of the longest. At a bifurcation the moments
-    select a mode independent of the mesh and of the order of assembly. The drag has to exceed every negative
+    select a mode independent of the mesh and of the order of assembly. Moments of the first degree do no work on the
+    antisymmetric mode of a beam clamped at both ends. The drag has to exceed every negative
     curvature; otherwise the moments themselves are returned.
     """
     on, moments = _feasible(model, system), np.zeros(model.size)

@@ -134,7 +134,11 @@ def case_chapter(compared: Compared, figures: Sequence[Figure], further: Sequenc
     else:
         names = ["comparison.json", "answers.json.gz", _CONTACT_FORCES]
         claims, steps = [(*row[:4], row[-1]) for row in claims_table(compared).rows], stepper(compared)
-        shares = [(row.difference / row.scale, row.probe.name) for row in compared.rows if row.bounds is not None]
+        shares = [
+            (row.difference / row.scale, row.probe.name)
+            for row in compared.rows
+            if row.bounds is not None and row.scale > 0.0
+        ]
         share, probe = max(shares, key=lambda each: each[0], default=(None, "–"))
         largest = percent(share), probe
     met = f"{sum(row[-1] == 'met' for row in claims)} of {len(claims)}" if claims else "–"

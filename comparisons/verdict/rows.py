@@ -243,9 +243,10 @@ def _true_errors(row: Row, exact: StationAnswer | None, size: Callable[[Array], 
         return None
     share = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
     if row.probe.quantity in PLACES_OF_CONTACT:
-        answers = np.stack((row.exact, row.cprbm, row.fea))
-        at_end = np.minimum(answers, row.scale - answers) <= ROUND_OFF * row.scale
-        share = math.sqrt(share) if np.any(at_end[0] & ~at_end[1:].any(axis=0)) else share
+        exact_ends, *ends = (
+            np.minimum(x, row.scale - x) <= ROUND_OFF * row.scale for x in (row.exact, row.cprbm, row.fea)
+        )
+        share = math.sqrt(share) if np.any(exact_ends & ~np.any(ends, axis=0)) else share
     return TrueErrors(size(row.cprbm - row.exact), size(row.fea - row.exact), share * row.scale)
 
 

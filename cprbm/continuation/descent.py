@@ -5,15 +5,19 @@ symbol   meaning
 =======  ====================================================================================
 α        strength of springs from the links to the last state, energy α/2 Σ L (θ − θ_k)²
 κ        smallest curvature
-m        faint moments 1 + s/ℓ per length, s along the beams in the scene's order
-u        leaning: response to m against the springs
+m        faint moments (1 + s/ℓ)² per length, s along the beams in the scene's order
+u        leaning: response to m against the springs of α just above |κ|
 =======  ====================================================================================
 
-Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  The descent begins with u, in
-either sense, and follows the lower of both.  With α = 2|κ| the softest mode has the largest part in u, and the distance
-from the saddle doubles in a step.  The springs of the first step are so stiff that no link turns farther than by the
-kick: a softer step may pass the saddle and end on the other side.  The springs soften while steps are short, stiffen
-where a step fails, and vanish near the minimum.
+Each step minimises Π plus the energy of the springs, so that Π falls from step to step.  Beyond a bifurcation the
+branch goes on as a saddle: the descent begins there, else at the last minimum.  The first step leans by u in either
+sense, and follows the lower of both.  Moments of the first degree would do no work on the antisymmetric mode of a beam
+clamped at both ends.  With α near |κ| the softest mode has the largest part in u; with α = 2|κ| the distance from the
+saddle doubles in a step.
+
+The springs of the first step are so stiff that no link turns farther than by the kick, and no later step turns back
+behind a decrease of Π: a softer step may pass the saddle and end on the other side.  The springs soften while steps are
+short, stiffen where a step fails, and vanish near the minimum.
 
 Where both senses lead equally low, as at a symmetric bifurcation, the sense of m counts.  Several modes may soften at
 a single load: u has all of them in fixed parts.  Neither the mesh nor the order of assembly decides.

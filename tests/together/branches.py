@@ -153,6 +153,39 @@ def column_between_pegs(
     )
 
 
+def strip_between_walls(shares: list[float]) -> dict[str, Any]:
+    """A slightly bowed strip between clamps and two walls, 1/50 of the length away, whose ends come nearer.
+
+    The ``shares`` of 1/375 of the length are the stations.  The ends' way bends the strip out to a wall.
+    """
+    s = np.linspace(0.0, 1.0, 25)
+    points = np.column_stack([s, (1.0 - np.cos(2.0 * pi * s)) / 12000.0]) * LENGTH
+    curve = {"kind": "spline", "points": points.tolist(), "start_direction": [1.0, 0.0], "end_direction": [1.0, 0.0]}
+    beam = {"thickness": LENGTH / 600.0, "width": WIDTH, "material": "m"}
+    walls = {
+        name: {
+            "kind": "beam-half-plane",
+            "beam": "beam",
+            "body": "wall",
+            "point": [0.0, sense * LENGTH / 50.0],
+            "normal": [0.0, -sense],
+        }
+        for name, sense in (("top", 1.0), ("bottom", -1.0))
+    }
+    return _scene(
+        "strip-between-walls",
+        bodies={
+            "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+            "slide": {"motion": "slides", "along": [1.0, 0.0], "points": {"E": [LENGTH, 0.0]}},
+        },
+        beams={"beam": {**beam, "curve": curve, "start": _weld("R"), "end": _weld("E")}},
+        drives={"v": {"kind": "displacement", "point": "E", "direction": [-1.0, 0.0]}},
+        contacts=walls,
+        stages=[_stage("press", "v", [share * LENGTH / 375.0 for share in shares], "jump")],
+        probes=[{"of": "top", "quantity": "centre"}],
+    ) | {"theory": "stretch"}
+
+
 def snap(ways: list[list[float]], *, stopped_at: float | None = None, beyond: str = "jump") -> dict[str, Any]:
     """The beam of SNAP, hanging below, its clamp turned through one stage of angles (rad) after the other.
 

@@ -176,14 +176,33 @@ def test_a_column_just_before_its_critical_load_is_reached(solve, within):
     ids=["cprbm", "fea"],
 )
 def test_a_column_between_pegs_leans_to_one_side_on_every_mesh(solver, settings, angle):
-    # Faint moments 1 + s/l per length do the work ∫ (1 + s/l) w′ ds = −∫ w ds/l on a deflection w to the left that
-    # vanishes at both ends.  The work is positive to the right.
+    # Faint moments (1 + s/l)² per length do the work ∫ (1 + s/l)² w′ ds = −2 ∫ (1 + s/l) w ds/l on a deflection w to
+    # the left that vanishes at both ends.  The work is positive to the right.
     loads = [times * columns.critical("pinned") for times in (0.9, 1.2)]
     scene = scene_from(branches.column_between_pegs(loads, angle=angle, gap=2e-3, beyond="jump"))
     for chosen in settings:
         values = solver(scene, chosen).stations[-1].values
         assert values["left.force"][0] == 0.0
         assert values["right.force"][0] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("solver", "settings"),
+    [
+        (cprbm.answer, [cprbm.Settings(links=n) for n in (20, 30, 40, 50)]),
+        (fea_reference.answer, [fea_reference.Settings(elements=n) for n in (40, 60)]),
+    ],
+    ids=["cprbm", "fea"],
+)
+def test_a_strip_between_walls_leans_to_one_side_on_every_mesh(solver, settings):
+    # Clamped at both ends, the strip touches the upper wall in the middle, and deflects by an antisymmetric w there.
+    # The faint moments do the work −2 ∫ s w ds/l².  The work is positive with w > 0 in the first half: the strip
+    # presses on the wall before the middle.
+    for chosen in settings:
+        answer = solver(scene_from(branches.strip_between_walls([0.3, 0.5])), chosen)
+        assert lost(answer) == [(Loss.BIFURCATION, "")]
+        pressed = answer.stations[-1].values["top.centre"][0]
+        assert 0.25 * LENGTH < pressed < 0.45 * LENGTH
 
 
 def test_a_dome_under_a_plunger_leans_aside_and_comes_back():
@@ -400,8 +419,8 @@ def test_an_end_that_nobody_asked_for_is_told_all_the_same(solve, within):
 )
 def test_two_halves_that_snap_alone_lean_to_one_side_in_both_solvers(solver, sizes):
     # Turned about its middle, a half of a cosine beam is the same half, and it buckles to either side: the mechanism
-    # has four branches.  Faint moments 1 + s per length do the work ∫ (1 + s) w′ ds = −∫ w ds on a half with ends at
-    # rest, w the deflection to the left.  The work is positive for a half that bulges to the right: downwards.
+    # has four branches.  Faint moments (1 + s)² per length do the work −2 ∫ (1 + s) w ds on a half with ends at rest,
+    # w the deflection to the left.  The work is positive for a half that bulges to the right: downwards.
     for settings in sizes:
         answer = solver(scene_from(branches.double_cosine()), settings)
         assert lost(answer) == [(Loss.BIFURCATION, "")]
