@@ -72,8 +72,7 @@ def equilibrium(
     decrease: small against the first ones, because the search for a zone may take steps as small as the load.
     """
     moving = model.moving
-    correction, last, iteration, far = np.inf, np.inf, 0, 0
-    longest = 0.0
+    correction, longest, last, iteration, far = np.inf, 0.0, np.inf, 0, 0
     small: list[float] = []
     predicted = dict(before)
     system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, predicted, drag)

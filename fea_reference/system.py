@@ -211,11 +211,10 @@ def _assembled(
 
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
-    balanced += [abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart]
-    largest = float(max(balanced))
+    auxiliary = (abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart)
+    largest = float(max(*balanced, *auxiliary))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
-    floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
-    floor += rounded
+    floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle)) + rounded
     significant = largest > NOTHING * floor
     return System(
         z,

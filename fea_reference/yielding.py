@@ -75,15 +75,15 @@ def penetration_effects(
     pressing = [contact for contact in system.touches if contact.closed]
     largest = max(contact.push for contact in pressing)
     places = model.node_dofs[:2]
-    motion = float(np.abs((system.z.values - model.start.values)[places]).max())
-    motion = max(motion, _STILL * largest / min(beam.softest for beam in model.beams))
+    moved = float(np.abs((system.z.values - model.start.values)[places]).max())
+    motion = max(moved, _STILL * largest / min(beam.softest for beam in model.beams))
     beside = [
         *_open_contacts(
             model, system, (contact.pair for contact in system.touches if not contact.closed), penalties, quadrature
         ),
         *_open_contacts(model, system, waiting, penalties, quadrature),
     ]
-    groups = _determinate_groups(pressing)
+    groups = _determinate_groups(model, pressing)
     effects = {}
     for contact in sinking:
         response = system.solve(model.spread(contact.dofs, -contact.gradient))
@@ -94,8 +94,7 @@ def penetration_effects(
         for group in groups:
             change = sum(float(other.predicted_forces(response).sum()) - other.push for other in group)
             change += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
-            known = sum(other.push for other in group)
-            share = max(share, abs(change) / max(known, _FAINT * largest))
+            share = max(share, abs(change) / max(sum(other.push for other in group), _FAINT * largest))
         for gap, opening, compliance in beside:
             overlap = -(gap + float(opening @ response))
             if overlap > 0.0:
@@ -104,8 +103,8 @@ def penetration_effects(
     return effects
 
 
-def _determinate_groups(pressing: Iterable[Touch]) -> list[list[Touch]]:
-    """Groups of contacts with determinate sums of forces: contacts of a beam at the same place form a group.
+def _determinate_groups(model: Model, pressing: Iterable[Touch]) -> list[list[Touch]]:
+    """Groups of contacts with determinate sums of forces: contacts at the same place form a group.
 
     Contacts beside a joint on their surface are left out: only their moment about the joint is determinate, which the
     motion reflects.
@@ -115,7 +114,7 @@ def _determinate_groups(pressing: Iterable[Touch]) -> list[list[Touch]]:
         if _beside_joint(contact):
             continue
         for group in groups:
-            if _at_one_place(group[0], contact):
+            if _at_one_place(model, group[0], contact):
                 group.append(contact)
                 break
         else:
@@ -123,12 +122,18 @@ def _determinate_groups(pressing: Iterable[Touch]) -> list[list[Touch]]:
     return groups
 
 
-def _at_one_place(contact: Touch, other: Touch) -> bool:
-    """True if two contacts push the same beam to the same side within an element."""
-    if contact.pair.first != other.pair.first:
-        return False
+def _at_one_place(model: Model, contact: Touch, other: Touch) -> bool:
+    """True if two contacts push to the same side within an element: on a beam, or at ends joined to the same point."""
     apart = max(contact.zeta.min(), other.zeta.min()) - min(contact.zeta.max(), other.zeta.max())
-    return apart < POINT and float(contact.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
+    near = apart < POINT if contact.pair.first == other.pair.first else _joined(model, contact) & _joined(model, other)
+    return bool(near) and float(contact.force.sum(axis=1) @ other.force.sum(axis=1)) > 0.0
+
+
+def _joined(model: Model, contact: Touch) -> set[str]:
+    """Points of bodies joined to an end of the first beam within an element of the contact."""
+    nodes = model.node_dofs[0, model.beams[contact.pair.first].nodes]
+    near = {int(nodes[0]): contact.zeta.min(), int(nodes[-1]): nodes.size - 1 - contact.zeta.max()}
+    return {joint.point for joint in model.joints if near.get(int(joint.dofs[0]), POINT) < POINT}
 
 
 def _open_contacts(
