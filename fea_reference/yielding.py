@@ -75,7 +75,7 @@ def penetration_effects(
     pressing = [contact for contact in system.touches if contact.closed]
     largest = max(contact.push for contact in pressing)
     places = model.node_dofs[:2]
-    moved = float(np.abs((system.z.values - model.start.values)[places]).max())
+    moved = float(np.hypot(*(system.z.values - model.start.values)[places]).max())
     motion = max(moved, _STILL * largest / min(beam.softest for beam in model.beams))
     beside = [
         *_open_contacts(
@@ -90,7 +90,7 @@ def penetration_effects(
         if response is None:
             continue
         response *= _FALLS[contact.sharp]
-        share = float(np.abs(response[places]).max()) / motion
+        share = float(np.hypot(*response[places]).max()) / motion
         for group in groups:
             change = sum(float(other.predicted_forces(response).sum()) - other.push for other in group)
             change += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
