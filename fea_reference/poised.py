@@ -25,7 +25,7 @@ _BETTER = 0.1  # times the initial residual
 
 
 def without_gap_round_off(model: Model, values: Array, system: System, accepted: float) -> System:
-    """Equilibrium under ``values`` near ``system``, with a residual of at most ``accepted`` or of the elements' round-off.
+    """Equilibrium under ``values`` near ``system``, with a residual of at most ``accepted`` or round-off of elements.
 
     Without success ``system`` is returned, or the last state if its residual is much smaller.
     """

@@ -23,7 +23,7 @@ from cprbm_scene.answer import Array
 from fea_reference.contacts import least_gap, touch
 from fea_reference.model import Model
 from fea_reference.system import System
-from fea_reference.touch import Contact, Face, Penalty, Touch
+from fea_reference.touch import Contact, Face, Pair, Penalty, Touch
 
 SIGNIFICANT = 0.01
 """Relative change of forces and motions by a penetration that is significant."""
@@ -32,7 +32,7 @@ ROUND_OFF_DEPTH = 2e-12
 """Lengths of the longest beam: smaller penetrations are affected by round-off of positions."""
 
 POINT = 1.0
-"""Elements: largest width of a point contact's zone."""
+"""Elements of the coarser beam: largest width of a point contact's zone."""
 
 _FALLS = (1.5, 2.0)  # m between sides, and at a tip
 _FAINT = 0.1  # times the largest force: reference for smaller forces
@@ -41,16 +41,22 @@ _BESIDE = 1e-6  # times the measure: range above the least gap for the contact's
 _NEAR = 0.1  # lengths of the longest beam: larger gaps do not close under loose penalties
 
 
-def is_point_contact(contact: Touch) -> bool:
+def point_width(model: Model, contact: Touch) -> float:
+    """Largest width of a point contact's zone, in elements of the first beam."""
+    beams = (contact.pair.first, contact.pair.second) if isinstance(contact.pair, Pair) else (contact.pair.first,)
+    lengths = [float(model.elements.length[model.beams[i].elements.start]) for i in beams]
+    return POINT * max(lengths) / lengths[0]
+
+
+def is_point_contact(model: Model, contact: Touch) -> bool:
     """True if a contact presses in points only, in zones no wider than an element.
 
     A contact beside a joint on its surface does not count: its force grows without bound towards the joint.
     """
     if not contact.closed or _beside_joint(contact):
         return False
-    first, last = contact.zones.intervals.T
-    begins = contact.zones.begins
-    return bool((last[np.append(begins[1:], True)] - first[begins]).max() < POINT)
+    (first, last), begins = contact.zones.intervals.T, contact.zones.begins
+    return bool((last[np.append(begins[1:], True)] - first[begins]).max() < point_width(model, contact))
 
 
 def _beside_joint(contact: Touch) -> bool:
@@ -68,14 +74,13 @@ def penetration_effects(
     sinking = [
         contact
         for contact in system.touches
-        if contact.push > 0.0 and contact.penetration > ROUND_OFF_DEPTH and is_point_contact(contact)
+        if contact.push > 0.0 and contact.penetration > ROUND_OFF_DEPTH and is_point_contact(model, contact)
     ]
     if not sinking:
         return {}
     pressing = [contact for contact in system.touches if contact.closed]
     largest = max(contact.push for contact in pressing)
-    places = model.node_dofs[:2]
-    moved = float(np.hypot(*(system.z.values - model.start.values)[places]).max())
+    moved = float(np.hypot(*(system.z.values - model.start.values)[model.node_dofs[:2]]).max())
     motion = max(moved, _STILL * largest / min(beam.softest for beam in model.beams))
     beside = [
         *_open_contacts(
@@ -90,7 +95,7 @@ def penetration_effects(
         if response is None:
             continue
         response *= _FALLS[contact.sharp]
-        share = float(np.hypot(*response[places]).max()) / motion
+        share = float(np.hypot(*response[model.node_dofs[:2]]).max()) / motion
         for group in groups:
             change = sum(float(other.predicted_forces(response).sum()) - other.push for other in group)
             change += _FALLS[contact.sharp] * contact.push if any(other is contact for other in group) else 0.0
