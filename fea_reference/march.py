@@ -46,7 +46,7 @@ from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
-from fea_reference.yielding import POINT, ROUND_OFF_DEPTH, SIGNIFICANT, is_point_contact, penetration_effects
+from fea_reference.yielding import ROUND_OFF_DEPTH, SIGNIFICANT, is_point_contact, penetration_effects, point_width
 
 # rad (and lengths): largest difference between equilibrium and prediction; a larger one means another branch
 _MAX_CORRECTION = 0.2
@@ -405,7 +405,7 @@ class March:
         wide = {
             contact.pair
             for contact in system.touches
-            if isinstance(contact.pair, Circle) and not is_point_contact(contact)
+            if isinstance(contact.pair, Circle) and not is_point_contact(self.model, contact)
         }
         limits = {contact: contact.stiffest if contact in wide else np.inf for contact in deep}
         return {
@@ -789,7 +789,7 @@ class March:
             depths: dict[Contact, float] = {}
             held_depths: dict[Contact, float] = {}
             for contact in self.system.touches:
-                narrow = contact.closed and np.ptp(contact.zones.intervals) < POINT
+                narrow = contact.closed and np.ptp(contact.zones.intervals) < point_width(self.model, contact)
                 limit = most**_POINT_POWER if narrow else most
                 factor = min(max(factors[contact.pair], 1.0 / limit), limit)
                 stiffness = factor * self.penalties[contact.pair].stiffness
@@ -1031,13 +1031,9 @@ def _too_deep(model: Model, system: System) -> list[Contact]:
 
 def _deepest(contact: Contact) -> float:
     """Greatest penetration of a contact not yet passed through; infinite for lines and edges."""
-    match contact:
-        case Pair(distance=distance, scale=scale) if distance > 0.0:
-            return scale
-        case Circle():
-            return contact.deepest
-        case _:
-            return np.inf
+    if isinstance(contact, Pair) and contact.distance > 0.0:
+        return contact.scale
+    return contact.deepest if isinstance(contact, Circle) else np.inf
 
 
 def _straight(before: float, beyond: float) -> float:

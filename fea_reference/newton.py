@@ -23,13 +23,12 @@ import numpy as np
 from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
-from fea_reference.hermite import Index
 from fea_reference.linesearch import line_search
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.sinking import known_depths, with_predicted_depths
 from fea_reference.state import State
-from fea_reference.system import Drag, System, assemble
+from fea_reference.system import Drag, System, assemble, imbalance
 from fea_reference.touch import Contact, Penalty, Touch
 
 _MAX_MOTION = 0.4  # rad, and lengths of the longest beam: largest motion per iteration
@@ -71,9 +70,7 @@ def equilibrium(
     point forces (k,) of the contacts. A ``drag`` resists the motions. The search stops if small corrections do not
     decrease: small against the first ones, because the search for a zone may take steps as small as the load.
     """
-    moving = model.moving
-    correction, last, iteration, far = np.inf, np.inf, 0, 0
-    longest = 0.0
+    correction, longest, last, iteration, far = np.inf, 0.0, np.inf, 0, 0
     small: list[float] = []
     predicted = dict(before)
     system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, predicted, drag)
@@ -88,9 +85,8 @@ def equilibrium(
         return with_predicted_depths(model, penalties, settings.quadrature, system, z, predicted, known)
 
     while True:
-        unbalanced = float(np.abs(system.residual).max())
-        accepted = max(settings.residual * system.scale, system.floor)
-        if not held_depths and correction <= settings.correction and unbalanced <= accepted:
+        unbalanced = imbalance(model, system, settings.residual)
+        if not held_depths and correction <= settings.correction and unbalanced <= 1.0:
             return Solved(system, converged=True, iterations=iteration)
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
@@ -98,8 +94,8 @@ def equilibrium(
         step = system.solve(-system.residual)
         if step is None:
             return Solved(system, converged=False, iterations=iteration + 1)
-        correction = float(np.abs(step[moving]).max())
-        if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
+        correction = float(np.abs(step[model.moving]).max())
+        if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING:
             return Solved(system, converged=True, iterations=iteration)  # this step is not needed
         far += correction > _MAX_MOTION
         longest = max(longest, correction)
@@ -109,10 +105,8 @@ def equilibrium(
             return Solved(system, converged=False, iterations=iteration + 1)
         step *= min(1.0, _MAX_MOTION / max(correction, _MAX_MOTION))
         predicted = {contact.pair: contact.predicted_forces(step) for contact in system.touches}
-        if penalties and not held_depths and unbalanced > accepted:
-            system = _line_searched(
-                model, settings, penalties, values, system, step, moving, predicted, drag, settled_at
-            )
+        if penalties and not held_depths and unbalanced > 1.0:
+            system = _line_searched(model, settings, penalties, values, system, step, predicted, drag, settled_at)
             z = system.z
         else:
             z = settled_at(system, advance(model, z, step))
@@ -167,14 +161,13 @@ def _line_searched(
     values: Array,
     system: System,
     step: Array,
-    moving: Index,
     predicted: Mapping[Contact, Array],
     drag: Drag | None,
     settled_at: Callable[[System, State], State],
 ) -> System:
     """System after a line search along the motions of ``step``; forces take the full step."""
     forces = step.copy()
-    forces[moving] = 0.0
+    forces[model.moving] = 0.0
     motions = step - forces
 
     def after(fraction: float) -> System:

@@ -25,7 +25,7 @@ _BETTER = 0.1  # times the initial residual
 
 
 def without_gap_round_off(model: Model, values: Array, system: System, accepted: float) -> System:
-    """Equilibrium under ``values`` near ``system``, with a residual of at most ``accepted``.
+    """Equilibrium under ``values`` near ``system``, with a residual of at most ``accepted`` or round-off of elements.
 
     Without success ``system`` is returned, or the last state if its residual is much smaller.
     """
@@ -38,7 +38,7 @@ def without_gap_round_off(model: Model, values: Array, system: System, accepted:
         pushes = {contact.pair: contact.predicted_forces(step) for contact in corrected.touches}
         z = advance(model, z, step)
         corrected = with_point_forces(model, system, values, z, pushes)
-        if float(np.abs(corrected.residual).max()) <= accepted:
+        if float(np.abs(corrected.residual).max()) <= max(accepted, corrected.floor):
             return corrected
     better = float(np.abs(corrected.residual).max()) <= _BETTER * float(np.abs(system.residual).max())
     return corrected if better else system

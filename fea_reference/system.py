@@ -86,6 +86,20 @@ class System:
         return None if solution is None or not np.isfinite(solution).all() else solution
 
 
+def violation(model: Model, system: System) -> float:
+    """Largest violation of joints, guides, drives, closed stops and lengths of elements."""
+    return float(np.abs(np.delete(system.residual, model.moving)).max())
+
+
+def imbalance(model: Model, system: System, accepted: float) -> float:
+    """Residual over its largest value in equilibrium: ``accepted`` times the largest force, or round-off.
+
+    Constraints are violated by round-off only, however large the forces are.
+    """
+    unbalanced = float(np.abs(system.residual).max()) / max(accepted * system.scale, system.floor)
+    return max(unbalanced, violation(model, system) / system.floor)
+
+
 def factors(matrix: csc_matrix) -> SuperLU:
     """LU factors of a matrix (m, m), without supernodes: beam matrices have too few similar columns.
 
@@ -197,11 +211,10 @@ def _assembled(
 
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
-    balanced += [abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart]
-    largest = float(max(balanced))
+    auxiliary = (abs(values[model.stepped.index(MOMENTS)] * contact.moment) for contact in model.apart)
+    largest = float(max(*balanced, *auxiliary))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
-    floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
-    floor += rounded
+    floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle)) + rounded
     significant = largest > NOTHING * floor
     return System(
         z,
