@@ -10,7 +10,7 @@ from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import ground_reaction, joint_reaction, row_reaction
 from fea_reference.system import NOTHING, System, violation
-from fea_reference.touch import LACKING, Face, Pair, Touch
+from fea_reference.touch import LACKING, Face, Pair
 from fea_reference.yielding import SIGNIFICANT, penetration_effects
 
 _VIOLATION = 1e-9
@@ -86,7 +86,9 @@ def certify(march: March) -> Certificate:
                 failures.append(
                     f"a tip of contact {contact.pair.name} cuts into the beam by {deep * model.units.length:.1e} m"
                 )
-        far = _widest_pressed_gap(march, contact)
+        # a lead starts the pressure before the gap closes: the predicted pressure over the penalty, which is
+        # proportional to EI; a taut beam needs a larger lead
+        far = max(0.0, float((contact.gap[contact.gap < 0.0] + march.penalties[contact.pair].lead).max(initial=0.0)))
         if not far <= _WIDEST_GAP * min(contact.pair.measure, _SLENDER):
             failures.append(f"contact {contact.pair.name} presses across a gap of {far * model.units.length:.1e} m")
     if not force <= balance:
@@ -114,14 +116,6 @@ def certify(march: March) -> Certificate:
         iterations=march.iterations,
         failures=tuple(failures),
     )
-
-
-def _widest_pressed_gap(march: March, contact: Touch) -> float:
-    """Widest gap with pressure: a lead starts the pressure before the gap closes.
-
-    The lead is the predicted pressure over the penalty, which is proportional to EI; a taut beam needs a larger lead.
-    """
-    return max(0.0, float((contact.gap[contact.gap < 0.0] + march.penalties[contact.pair].lead).max(initial=0.0)))
 
 
 def _drive_below_round_off(march: March) -> bool:

@@ -27,7 +27,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm_scene.answer import Loss
+from cprbm_scene.answer import Ints, Loss
 from fea_reference.advance import advance
 from fea_reference.contacts import zones_of
 from fea_reference.curvature import moment_mode
@@ -35,7 +35,6 @@ from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.following import CriticalPoint
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
-from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.state import State
 from fea_reference.system import Drag, System
@@ -47,7 +46,7 @@ _KICKS = (3e-3, 1e-2)  # rad (and lengths): displacements along φ
 _FARTHEST = 0.05  # rad (and lengths): largest motion of a step
 _AIM = 0.03  # the intended motion of a step; a shorter step is followed by a step without drag
 _CONVEX = 2.5  # times a negative curvature: the least drag
-_SOFT = 1e-3  # drag against which the moments act at a bifurcation: modes of a larger curvature are stiff
+_SOFT = 1e-3  # drag against which the moments act at a bifurcation; a larger drag adds stiff motions to the mode
 _FIRMER = 1.6  # factor of the drag after a failed step with negative curvature
 _RAISED = 4.0  # factor of the drag after any other failed step
 _SOFTER = 0.9  # factor of the least drag after a successful step
@@ -89,8 +88,11 @@ def _descend(
     march.system = critical.system
     march.reassemble()
     least = 10.0 * abs(critical.left) + 1.0
-    soft = abs(critical.left) + _SOFT  # a stiffer drag adds stiffer motions to the mode
-    mode = moment_mode(march.model, critical.system, soft) if critical.loss is Loss.BIFURCATION else critical.direction
+    mode = (
+        moment_mode(march.model, critical.system, abs(critical.left) + _SOFT)
+        if critical.loss is Loss.BIFURCATION
+        else critical.direction
+    )
     size = float(np.abs(mode[march.model.moving]).max())
     if not size > 0.0:
         return None
@@ -105,7 +107,8 @@ def _descend(
             drag = least
             # a step with too little drag may pass the saddle and turn back
             while drag < _STRONGEST and not (
-                _step(trial, load, start, drag, start) and _same_sense(march.model, first, start, trial.system.z)
+                _step(trial, load, start, drag, start)
+                and _same_sense(march.model.node_dofs[2], first, start, trial.system.z)
             ):
                 trial, drag = march.saved(), 10.0 * drag
             if drag < _STRONGEST:
@@ -123,9 +126,8 @@ def _descend(
     return None
 
 
-def _same_sense(model: Model, first: State, second: State, third: State) -> bool:
-    """True if the sections turn in the same sense from the first state to the second as to the third."""
-    turns = model.node_dofs[2]
+def _same_sense(turns: Ints, first: State, second: State, third: State) -> bool:
+    """True if the sections' ``turns`` have the same sense from the first state to the second as to the third."""
     return float((second[turns] - first[turns]) @ (third[turns] - first[turns])) > 0.0
 
 

@@ -99,16 +99,15 @@ def reach(march: March, course: Course, target: float) -> None:
 
 def _ending_at_first(march: March, origin: March, new_points: list[BypassedPoint]) -> StoppedError:
     """Ending at the first critical point passed, after a continuation without success."""
-    first = replace(new_points[0].record.end, after=None)
-    march.critical, march.bypassed = [*origin.critical, first], list(origin.bypassed)
+    march.critical = [*origin.critical, replace(new_points[0].record.end, after=None)]
+    march.bypassed = list(origin.bypassed)
     return StoppedError(Ending.BRANCH_ENDS, new_points[0].sentence)
 
 
 def _reach(march: March, course: Course, target: float) -> bool:
     """Step to ``target`` with supervision as the course says; True if a step released energy."""
     load = course.load
-    march.iterations = 0
-    march.switched, march.least_penalties = {}, {}
+    march.iterations, march.switched, march.least_penalties = 0, {}, {}
     march.close_touching(load)
     origin, before = march.saved(), march.zones()
     if march.zones_far and march.values[load] != target:
@@ -380,8 +379,11 @@ def _descent_possible(march: March, load: int, target: float, critical: Critical
 
 def _raise_penalty(march: March, load: int, target: float, critical: CriticalPoint) -> bool:
     """True if a slip beyond ``target`` is due to the penalty and a firmer penalty now holds up to the target."""
-    behind = (critical.value - target) * np.sign(target - march.values[load]) > 0.0
-    return critical.loss is Loss.SLIP and bool(behind) and march.raise_penalty(critical.what)
+    return (
+        critical.loss is Loss.SLIP
+        and bool((critical.value - target) * np.sign(target - march.values[load]) > 0.0)
+        and march.raise_penalty(critical.what)
+    )
 
 
 def _may_bypass(march: March, course: Course, critical: CriticalPoint) -> bool:
@@ -391,13 +393,16 @@ def _may_bypass(march: March, course: Course, critical: CriticalPoint) -> bool:
     are excluded, too.
     """
     unit = march.model.stepped[course.load].unit
-    ends = [point.record.end for point in march.bypassed]
-    bypassed_values = [end.value / unit for end in ends if end.stage == course.stage]
-    repeated = len(bypassed_values) > 0 and abs(critical.value - bypassed_values[-1]) <= _SAME_POINT * course.span
-    repeated = repeated or (
-        len(bypassed_values) >= _MANY and abs(critical.value - bypassed_values[-_MANY]) <= _CROWDED * course.span
+    distances = [
+        abs(critical.value - point.record.end.value / unit) / course.span
+        for point in march.bypassed
+        if point.record.end.stage == course.stage
+    ]
+    return (
+        critical.loss is not Loss.BIFURCATION
+        and not (distances and distances[-1] <= _SAME_POINT)
+        and not (len(distances) >= _MANY and distances[-_MANY] <= _CROWDED)
     )
-    return critical.loss is not Loss.BIFURCATION and not repeated
 
 
 def _continue_beyond(march: March, course: Course, target: float, critical: CriticalPoint) -> None:
