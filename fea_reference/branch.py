@@ -31,7 +31,7 @@ from fea_reference.curvature import Mode, softest
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.sinking import known_depths, with_predicted_depths
-from fea_reference.system import System, assemble, factors, imbalance, load_direction
+from fea_reference.system import System, assemble, factors, load_direction
 from fea_reference.touch import Contact, Penalty
 
 _ITERATIONS = 20
@@ -116,7 +116,8 @@ def point_at(branch: Branch, start: BranchPoint, length: float) -> BranchPoint |
         system = assemble(
             model, branch.penalties, settings.quadrature, branch.at(value), z, branch.acting, {}, predicted
         )
-        if correction <= settings.correction and imbalance(model, system, settings.residual) <= 1.0:
+        unbalanced = float(np.abs(system.residual).max())
+        if correction <= settings.correction and unbalanced <= max(settings.residual * system.scale, system.floor):
             return branch_point(branch, value, system, (start.way, start.rate))
         f = load_direction(model, branch.load, z, branch.acting)
         displacement = (z.values - start.system.z.values) + (z.rest - start.system.z.rest)

@@ -54,10 +54,6 @@ from fea_reference.state import State
 _MOTIONS = np.array([0, 1, 2, 0, 1, 3, 4])
 _SIGNS = np.array([-1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 _SIGNS_TWICE = (_SIGNS[:, None] * _SIGNS)[:, :, None]
-# length²/EI: c_N of an inextensible beam in the tangent only. Straight parallel beams between two bodies have redundant
-# constraints, and the tangent would be singular. The residual has no such compliance, so that the lengths are exact and
-# indeterminate axial forces change least.
-_LEAST_COMPLIANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,7 +225,7 @@ def forces(elements: Elements, chord: Chords, N: Array) -> ElementForces:
         xy = whole * nx * ny + lean * (cos * cos - sin * sin)
         (x1, x2), (y1, y2), (s1, s2) = -of_turn * nx, -of_turn * ny, strain_by_rotation
         xN, yN = cos - (s1 + s2) * nx, sin - (s1 + s2) * ny
-        by_N = -np.maximum(stretched, _LEAST_COMPLIANCE * elements.length) - mixed * gamma**2
+        by_N = -stretched - mixed * gamma**2
         rows = [xx, xy, x1, x2, xN], [xy, yy, y1, y2, yN], [x1, y1, *K[0], s1], [x2, y2, *K[1], s2]
         return _by_nodes(np.array([*rows, [xN, yN, s1, s2, by_N]]), 7)
 

@@ -783,13 +783,7 @@ class March:
                 self._penalty_accepted(contact, factors[contact.pair], tries, allowed.get(contact.pair))
                 for contact in self.system.touches
             )
-            # leads follow the current axial forces
-            if done and not any(
-                abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
-                > _LEAD_TOLERANCE
-                * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
-                for pair, pressure in pressures.items()
-            ):
+            if done and not self._leads_outdated(pressures):
                 return
             tighter = dict(self.penalties)
             depths: dict[Contact, float] = {}
@@ -977,6 +971,14 @@ class March:
             if share > 0.0 and abs(np.log(share)) > _PENALTY_TOLERANCE:
                 exponents[contact.pair] = float(np.clip(-np.log(factor) / np.log(share), *_EXPONENTS))
         return exponents
+
+    def _leads_outdated(self, pressures: Mapping[Contact, float]) -> bool:
+        """True if a lead differs from the lead of the current axial forces."""
+        return any(
+            abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
+            > _LEAD_TOLERANCE * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
+            for pair, pressure in pressures.items()
+        )
 
     def depths(self) -> dict[Contact, float]:
         """Penetrations of closed pairs of beams; the allowed penetration for pairs that do not press yet.

@@ -28,7 +28,7 @@ from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.sinking import known_depths, with_predicted_depths
 from fea_reference.state import State
-from fea_reference.system import Drag, System, assemble, imbalance
+from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
 
 _MAX_MOTION = 0.4  # rad, and lengths of the longest beam: largest motion per iteration
@@ -85,8 +85,9 @@ def equilibrium(
         return with_predicted_depths(model, penalties, settings.quadrature, system, z, predicted, known)
 
     while True:
-        unbalanced = imbalance(model, system, settings.residual)
-        if not held_depths and correction <= settings.correction and unbalanced <= 1.0:
+        unbalanced = float(np.abs(system.residual).max())
+        accepted = max(settings.residual * system.scale, system.floor)
+        if not held_depths and correction <= settings.correction and unbalanced <= accepted:
             return Solved(system, converged=True, iterations=iteration)
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
@@ -95,7 +96,7 @@ def equilibrium(
         if step is None:
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[model.moving]).max())
-        if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING:
+        if not held_depths and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
             return Solved(system, converged=True, iterations=iteration)  # this step is not needed
         far += correction > _MAX_MOTION
         longest = max(longest, correction)
@@ -105,7 +106,7 @@ def equilibrium(
             return Solved(system, converged=False, iterations=iteration + 1)
         step *= min(1.0, _MAX_MOTION / max(correction, _MAX_MOTION))
         predicted = {contact.pair: contact.predicted_forces(step) for contact in system.touches}
-        if penalties and not held_depths and unbalanced > 1.0:
+        if penalties and not held_depths and unbalanced > accepted:
             system = _line_searched(model, settings, penalties, values, system, step, predicted, drag, settled_at)
             z = system.z
         else:

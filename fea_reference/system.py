@@ -86,20 +86,6 @@ class System:
         return None if solution is None or not np.isfinite(solution).all() else solution
 
 
-def violation(model: Model, system: System) -> float:
-    """Largest violation of joints, guides, drives, closed stops and lengths of elements."""
-    return float(np.abs(np.delete(system.residual, model.moving)).max())
-
-
-def imbalance(model: Model, system: System, accepted: float) -> float:
-    """Residual over its largest value in equilibrium: ``accepted`` times the largest force, or round-off.
-
-    Constraints are violated by round-off only, however large the forces are.
-    """
-    unbalanced = float(np.abs(system.residual).max()) / max(accepted * system.scale, system.floor)
-    return max(unbalanced, violation(model, system) / system.floor)
-
-
 def factors(matrix: csc_matrix) -> SuperLU:
     """LU factors of a matrix (m, m), without supernodes: beam matrices have too few similar columns.
 
