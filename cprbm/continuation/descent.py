@@ -121,7 +121,7 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
     """
     soft, leaning = SOFTEST * abs(curvature) + 1e-6, np.zeros(system.size)
     leaning[system.angles] = system.metric * (1.0 + np.cumsum(system.metric)) ** 2
-    while (held := at_state(system, start, Springs(soft, start.z[system.angles]))).lost:
+    while (held := at_state(system, start, Springs(soft, start.z[system.angles]))).lost and soft < STIFFEST:
         soft *= STIFFER
     change = held.response(leaning)
     change[system.rows.first :] = 0.0

@@ -64,18 +64,15 @@ def softest(solved: Solved) -> Mode:
 def blocked(solved: Solved) -> Solved:
     """The state with open idle places, and with the closed touching places that block a mode in both senses."""
     system, state = solved.system, solved.state
-    places, closed, idle = (
-        state.contacts.places,
-        state.contacts.closed,
-        np.zeros(len(state.contacts.closed), dtype=bool),
-    )
-    arcs = arcs_of(system.geometry.arrays, places)
+    places, closed = state.contacts.places, state.contacts.closed.copy()
     for pair in set(places.pair[closed].tolist()):
         mine = np.flatnonzero(closed & (places.pair == pair))
-        between = mine[np.argsort(arcs[mine])][1:-1]
-        idle[between] = places.force[between] < IDLE * places.force[mine].max()
-    if idle.any():
-        solved = at_state(system, replace(state, contacts=replace(state.contacts, closed=closed & ~idle)))
+        between = mine[np.argsort(arcs_of(system.geometry.arrays, places)[mine])][1:-1]
+        closed[between] = places.force[between] >= IDLE * places.force[mine].max()
+    if np.any(closed != state.contacts.closed):
+        # places with a shared force open together
+        shared = closed[np.arange(len(closed)) + places.shares]
+        solved = at_state(system, replace(state, contacts=replace(state.contacts, closed=shared)))
     if not solved.lost or not system.geometry.pairs:
         return solved
     contacts, touching = _touching(solved)
