@@ -43,7 +43,7 @@ def last(steps_):
 def whole(tmp_path_factory):
     """A scene of every fate, judged in two children."""
     folder = tmp_path_factory.mktemp("robustness")
-    crew = Crew(fated_solvers(str(folder / "asked")), 2, fated, Patience(attempts=3))
+    crew = Crew(fated_solvers(str(folder / "asked")), 2, fated, Patience(attempts=5))
     return folder, last(run(PLAN, len(FATES), folder, [], crew))
 
 
