@@ -102,13 +102,12 @@ def _descend(
     for kick in kicks:
         trials: list[tuple[float, March, float]] = []
         for sense in (1.0, -1.0):
-            trial, first = march.saved(), critical.system.z
-            start = advance(march.model, first, sense * kick / size * mode)
-            drag = least
+            trial, drag = march.saved(), least
+            start = advance(march.model, critical.system.z, sense * kick / size * mode)
             # a step with too little drag may pass the saddle and turn back
             while drag < _STRONGEST and not (
                 _step(trial, load, start, drag, start)
-                and _same_sense(march.model.node_dofs[2], first, start, trial.system.z)
+                and _same_sense(march.model.node_dofs[2], critical.system.z, start, trial.system.z)
             ):
                 trial, drag = march.saved(), 10.0 * drag
             if drag < _STRONGEST:

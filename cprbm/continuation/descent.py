@@ -129,10 +129,10 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
     kicked = [replace(start, z=start.z + sense * change) for sense in (1.0, -1.0)]
     strength, energy = 2.0 * soft, potential(system, start)
     for _ in range(TRIES):
-        steps = [_step(system, each, strength, acting, iterations) for each in kicked]
-        states = [step.state for step in steps if step is not None]
-        moved = [_moved(system, each, step.state) for each, step in zip(kicked, steps, strict=True) if step is not None]
-        if states and max(moved) <= KICK:
+        steps = [(each, _step(system, each, strength, acting, iterations)) for each in kicked]
+        ways = [(each, step.state) for each, step in steps if step is not None]
+        if ways and max(_moved(system, *way) for way in ways) <= KICK:
+            states = [state for _, state in ways]
             energies = [potential(system, state) for state in states]
             equal = SAME * abs(energy - min(energies)) + ROUND_OFF * abs(energy)
             return states[int(energies[0] - min(energies) > equal)], strength

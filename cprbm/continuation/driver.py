@@ -254,9 +254,7 @@ class Driver:
         if blocked(after).lost:
             loss = Loss.CONTACT if name in self.system.mechanism.scene.contacts else Loss.STOP
             return self._leave(way, opened(before, after, t, loss, name), beyond)
-        self._note(
-            way, pressing_names(after) | (frozenset([name]) if change.closes else frozenset()), t - change.early, t
-        )
+        self._note(way, pressing_names(after) | ({name} if change.closes else set()), t - change.early, t)
         self.solved = after
         return [Reached(t, after)]
 

@@ -225,10 +225,10 @@ class Run:
             values=probe_values(statics, stage.name),
             shapes={
                 beam: Shape(
-                    frozen_array(self.samples[beam].s[at] * units.length),
-                    *map(frozen_array, (view.lines[beam][at] * units.length + units.origin).T),
+                    frozen_array(samples.s[samples.shape] * units.length),
+                    *map(frozen_array, (view.lines[beam][samples.shape] * units.length + units.origin).T),
                 )
-                for beam, at in ((beam, self.samples[beam].shape) for beam in self.scene.beams)
+                for beam, samples in self.samples.items()
             },
             touching=touching,
             certificate=certificate,
