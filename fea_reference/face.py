@@ -175,7 +175,10 @@ def _swept_over_tip(face: Face, views: Sequence[_View], zones: Sequence[Zones]) 
     over &= last.distance_along(tips[1][1]) < 0.0
     if not over.any():
         return False
-    over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1], zones[0])
+    # a tip in the beam is no deeper than the largest overlap
+    over &= (first.d * last.d <= 0.0) | (
+        before.pressed_at(first, tips[0][1], zones[0]) & (np.abs(first.d) <= face.edge.at(first.zeta) - zones[0].least)
+    )
     return bool((over & ~after.pressed_at(last, tips[1][1], zones[1])).any())
 
 
