@@ -150,7 +150,8 @@ class Driver:
                     raise StepError(Ending.STEP_TOO_SMALL, f"{self.spent} iterations did not lead to the next station")
                 step, refused = 0.5 * (t - self.reached), refused if trial.too_long else t
                 if step < self.settings.smallest_step:
-                    trail = self._ended(way, trail, t, beyond, trial)
+                    ended = contact_ends(trail, t) or critical_point(trail, t, way.change)
+                    trail = self._leave(way, ended or self._locked(way, t, trail, trial), beyond)
                     step = max(step, AHEAD[0])
                 continue
             at, solved, change = trial
@@ -257,15 +258,6 @@ class Driver:
         self._note(way, pressing_names(after) | ({name} if change.closes else set()), t - change.early, t)
         self.solved = after
         return [Reached(t, after)]
-
-    def _ended(self, way: Way, trail: list[Reached], t: float, beyond: Beyond, refused: StepError) -> list[Reached]:
-        """Leave a branch at the smallest step; the trail from there on.
-
-        Raises:
-            StepError: the solve ends.
-        """
-        point = contact_ends(trail, t) or critical_point(trail, t, way.change) or self._locked(way, t, trail, refused)
-        return self._leave(way, point, beyond)
 
     def _locked(self, way: Way, t: float, trail: list[Reached], refused: StepError) -> CriticalPoint:
         """The bifurcation of a straight beam under shortening.

@@ -102,9 +102,8 @@ def certify(
         (float(blocked(solved).lost), 0.0, Ending.NOT_A_MINIMUM, "the energy falls in {:.0f} independent directions"),
     )
     failures = [(ending, text.format(found, most)) for found, most, ending, text in checks if not found <= most]
-    if law is not None:
-        invalid = law.invalid(state.z, contacts.places, contacts.closed)
-        failures += [(Ending.LEFT_BOUNDARY, invalid)] if invalid else []
+    invalid = law.invalid(state.z, contacts.places, contacts.closed) if law is not None else ""
+    failures += [(Ending.LEFT_BOUNDARY, invalid)] if invalid else []
     certificate = Certificate(
         residual=residual,
         residual_floor=floor,

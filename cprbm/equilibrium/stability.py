@@ -99,8 +99,7 @@ def with_touching(solved: Solved) -> Solved:
     if softest(solved).curvature > NEUTRAL:
         return solved
     contacts, touching = _touching(solved)
-    closed = contacts.closed | touching
-    return at_state(solved.system, replace(solved.state, contacts=replace(contacts, closed=closed)))
+    return at_state(solved.system, replace(solved.state, contacts=replace(contacts, closed=contacts.closed | touching)))
 
 
 def _touching(solved: Solved) -> tuple[Contacts, Flags]:
