@@ -51,6 +51,9 @@ PULL = 1e-9
 PLACES = 12.0
 """Round-offs of a gap, three, times the weights 1, −2, 1 of three positions in the difference of two moments, four."""
 
+UNKNOWN = 1e-3
+"""Change of a contact force under a round-off of the gaps, over the largest and EI/ℓ²: a support shares the force."""
+
 OVERLAPS = 1e-9
 """Overlap of open curves, over the longest beam, left by the active set, which closes larger ones."""
 
@@ -82,7 +85,7 @@ def certify(
         turned + ((PLACES + 1.0 / shortest) / shortest if contacts.closed.any() else 0.0)
     ) + PLACES / float(motions[motions > 0.0].min(initial=np.inf))
     floor = 4.0 * EPSILON * (rounded + sqrt(len(system.metric)) * scale) / scale
-    gradient, (apart, overlap, pull) = np.abs(solved.gradient), contact_measures(solved)
+    gradient, (apart, overlap, pull, unknown) = np.abs(solved.gradient), contact_measures(solved)
     residual = float(gradient[~system.equations].max()) / scale
     violation = max(float(gradient[system.equations].max()), apart)
     # pull of a closed stop, turn of an open stop beyond the limit
@@ -94,6 +97,7 @@ def certify(
         (residual, max(tolerance, floor), Ending.NOT_CERTIFIED, "the residual is {:.1e}, allowed {:.1e}"),
         (violation, max(tolerance, LEAST_VIOLATION), Ending.NOT_CERTIFIED, OPEN),
         (complementarity, max(PULL, floor), Ending.NOT_CERTIFIED, "a stop or contact pulls by {:.1e}, allowed {:.1e}"),
+        (unknown, UNKNOWN, Ending.NOT_CERTIFIED, "round-off changes contact forces by {:.1e}, allowed {:.1e}"),
         (overlap, OVERLAPS, Ending.BEAMS_CROSSED, "an open contact overlaps by {:.1e} beams, allowed {:.1e}"),
         (bend, LARGEST_BEND, Ending.TURNED_TOO_FAR, BENT),
         (strain, LARGEST_STRAIN, Ending.TURNED_TOO_FAR, STRAINED),
@@ -150,8 +154,11 @@ def _resultants(solved: Solved) -> tuple[float, float]:
     )
 
 
-def contact_measures(solved: Solved) -> tuple[float, float, float]:
+def contact_measures(solved: Solved) -> tuple[float, float, float, float]:
     """Largest violation of a closed place, overlap of an open place, and pull of a closed place, in units.
+
+    The last measure is the change of a contact force under a round-off of all closed gaps, over the largest force and
+    at least 1.
 
     Joints within a piece of a point contact, and the compliance that the chain lacks there, are no overlaps.  Places
     with a shared force overlap by the sum of both gaps.
@@ -166,5 +173,7 @@ def contact_measures(solved: Solved) -> tuple[float, float, float]:
     corner = on_edge(geometry.arrays, places)
     free = ~closed & ~follows & ~beside & (~places.moves | corner) & (thick | ~places.at_point)
     overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
-    violation = float(np.abs(solved.factors.bordered.columns.values).max(initial=0.0))
-    return violation, overlap, float(np.max(-places.force[closed], initial=0.0))
+    values = np.abs(solved.factors.bordered.columns.values)
+    changes = np.abs(solved.factors.solve_both(np.zeros(solved.system.size), np.full(len(values), EPSILON))[1])
+    unknown = float(changes.max(initial=0.0)) / max(1.0, float(places.force.max(initial=0.0)))
+    return float(values.max(initial=0.0)), overlap, float(np.max(-places.force[closed], initial=0.0)), unknown

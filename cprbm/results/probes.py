@@ -123,8 +123,7 @@ def _moment(view: View, of: str) -> float:
         for end, joint in zip(END, ends_of(view.scene, record.beam), strict=True):
             if isinstance(joint, PinnedEnd) and view.scene.body_of(joint.point) == record.body:
                 about = view.end(record.beam, end)[1]
-                held = sum(moment for _, _, moment in pin_moments(view, of))
-                found = view.pressed[of]
+                held, found = sum(moment for _, _, moment in pin_moments(view, of)), view.pressed[of]
                 return float(held + cross(found.places[:, 0] - about, found.forces[:, 0]).sum())
     return 0.0
 

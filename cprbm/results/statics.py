@@ -69,9 +69,8 @@ def _joints(view: View) -> Iterator[PointForce]:
     for beam in view.scene.beams:
         for end, record in zip(END, ends_of(view.scene, beam), strict=True):
             if not isinstance(record, FreeEnd):
-                joint = f"{beam}@{end}"
-                moment = -view.multipliers.get(f"{joint}.turn", 0.0)
-                yield from _at_end(view, record.point, beam, end, _pull(view, joint), moment)
+                force, moment = _pull(view, f"{beam}@{end}"), -view.multipliers.get(f"{beam}@{end}.turn", 0.0)
+                yield from _at_end(view, record.point, beam, end, force, moment)
 
 
 def _at_end(view: View, source: str, beam: str, end: str, force: Array, moment: float) -> Iterator[PointForce]:
@@ -99,8 +98,8 @@ def _drives(view: View) -> Iterator[PointForce]:
             force = -view.multipliers[name] * np.array(unit_direction(drive.direction))
             yield PointForce(name, view.scene.body_of(drive.point), nan, view.place(drive.point), force, 0.0)
         else:
-            first = next(iter(view.scene.bodies[drive.body].points))
-            yield PointForce(name, drive.body, nan, view.place(first), NO_FORCE, -view.multipliers[name])
+            place = view.place(next(iter(view.scene.bodies[drive.body].points)))
+            yield PointForce(name, drive.body, nan, place, NO_FORCE, -view.multipliers[name])
 
 
 def _pins(view: View) -> Iterator[PointForce]:
@@ -245,10 +244,10 @@ def _point_loads(view: View, beam: str) -> Iterator[PointForce]:
             continue
         at, line = load.at * view.mechanism.chains[beam].length, view.mechanism.chains[beam].line
         place = (line.weights(np.array([at])) @ view.nodes[beam])[0]
-        if isinstance(load, BeamMoment):
-            force, moment = NO_FORCE, value / units.moment
-        else:
-            force, moment = value / units.force * np.array(unit_direction(load.direction)), 0.0
+        moment = value / units.moment if isinstance(load, BeamMoment) else 0.0
+        force = (
+            value / units.force * np.array(unit_direction(load.direction)) if isinstance(load, BeamForce) else NO_FORCE
+        )
         yield PointForce(name, beam, at, place, force, moment)
 
 
