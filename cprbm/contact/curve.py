@@ -271,30 +271,31 @@ class Frames:
         )
 
     def smooth_edge(
-        self, name: str, body: str, points: Array, tangents: Array, arcs: Array, sides: tuple[Array, Array] = NO_SIDES
+        self, name: str, body: str, points: Array, tangents: Array, length: float, sides: tuple[Array, Array] = NO_SIDES
     ) -> Curve:
-        """Cubic spline through ``points`` (k, 2) at arc lengths ``arcs`` (k,), with unit ``tangents`` at both ends.
+        """Cubic spline through ``points`` (k, 2), even by arc length, with unit ``tangents`` at both ends.
 
         Args:
             name, body: of the curve.
             points: places on the edge; a closed edge repeats the first.
             tangents: unit tangents (k, 2) at the points.
-            arcs: arc lengths (k,) at the points, from zero.
+            length: arc length of the edge.
             sides: points (j, 2) of straight pieces before and behind the spline.
         """
         from scipy.interpolate import CubicSpline  # scenes without smooth edges do not load it
 
         places, slopes = points @ np.array([1.0, 1.0j]), tangents @ np.array([1.0, 1.0j])
-        lengths = np.diff(arcs)
-        spline = CubicSpline(arcs, places, bc_type=((1, slopes[0]), (1, slopes[-1])))
+        pieces = len(points) - 1
+        step = length / pieces
+        spline = CubicSpline(np.arange(pieces + 1.0), places, bc_type=((1, step * slopes[0]), (1, step * slopes[-1])))
         begin, end = (
             np.concatenate(ends) @ np.array([1.0, 1.0j]) for ends in ((sides[0], points[:1]), (points[-1:], sides[1]))
         )
         straight = [np.column_stack([at[:-1], np.diff(at), 0.0 * at[1:], 0.0 * at[1:]]) for at in (begin, end)]
-        spans = np.concatenate([np.abs(np.diff(begin)), lengths, np.abs(np.diff(end))])
+        spans = np.concatenate([np.abs(np.diff(begin)), np.full(pieces, step), np.abs(np.diff(end))])
         return self.rigid_curve(
             name,
             body,
-            np.concatenate([straight[0], spline.c[::-1].T * lengths[:, None] ** np.arange(4), straight[1]]),
+            np.concatenate([straight[0], spline.c[::-1].T, straight[1]]),
             np.concatenate([[0.0], np.cumsum(spans)]),
         )

@@ -34,10 +34,7 @@ from cprbm_scene.curve_records import shape_of
 from cprbm_scene.statement import EdgeContact, EllipseContact, PinnedEnd, RigidContact, SplineContact
 
 PIECES = 256
-"""Pieces of a smooth edge.  The error is κ³ h⁴/384, at most 2e-8 of the radius on a closed convex edge."""
-
-SAMPLES = 4096
-"""Intervals of a smooth edge between which the curvature is taken as even."""
+"""Pieces of a smooth edge.  The error is κ³ h⁴/384: 2e-7 of the longer axis at the tip of an ellipse of 3 to 1."""
 
 REACH = 10.0
 """Half length of a half-plane's edge, and length of a solid's sides, over the longest beam."""
@@ -99,7 +96,7 @@ def contact_pairs(m: Mechanism) -> tuple[list[Curve], list[Pair]]:
 
 
 def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: RigidContact) -> tuple[Curve, int]:
-    """Curve of a rigid shape, and the side of the beam."""
+    """Curve of a rigid shape, at even arc lengths of a smooth edge, and the side of the beam."""
     name, place, u = f"contact {contact_name}", m.units.place, np.linspace(0.0, 1.0, PIECES + 1)
     side = 1 if getattr(contact, "side", "") in ("left", "inside") else -1
     match contact:
@@ -114,37 +111,22 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
         case CircleContact():
             around = np.column_stack([np.cos(2.0 * np.pi * u), np.sin(2.0 * np.pi * u)])
             points, tangents = place(contact.center + contact.radius * around), around[:, ::-1] * [-1.0, 1.0]
-            arcs = 2.0 * np.pi * contact.radius * u
+            length = 2.0 * np.pi * contact.radius
         case _:
             assert isinstance(contact, FunctionContact | SplineContact | EllipseContact)
             shape = shape_of(contact)
-            u = _borders(shape.length * shape.curvature(np.linspace(0.0, 1.0, SAMPLES + 1)))
-            points, tangents, arcs = place(shape.point(u)), shape.tangent(u), shape.length * u
+            points, tangents, length = place(shape.point(u)), shape.tangent(u), shape.length
     if isinstance(contact, FunctionContact):
         ascends = contact.range[1] > contact.range[0]
         side = 1 if (contact.side == "above") == (ascends == (contact.axis == "x")) else -1
     if isinstance(contact, EdgeContact):
         m.rows.extend(_pin_rows(m, contact_name, contact, points, side))
-    is_open = isinstance(contact, FunctionContact | SplineContact | LineContact) and not getattr(
-        contact, "closed", False
-    )
-    sides = sides_behind(points, side, REACH) if is_open else NO_SIDES
+    sides = NO_SIDES
+    if isinstance(contact, FunctionContact | SplineContact | LineContact) and not getattr(contact, "closed", False):
+        sides = sides_behind(points, side, REACH)
     if tangents is None:
         return frames.polyline(name, contact.body, np.concatenate([sides[0], points, sides[1]])), side
-    return frames.smooth_edge(name, contact.body, points, tangents, arcs / m.units.length, sides), side
-
-
-def _borders(turns: Array) -> Array:
-    """Fractions (PIECES + 1,) of a smooth edge's arc length at the borders of its pieces.
-
-    At least half of the pieces are even by arc length; the others follow the turn of the tangent.
-
-    Args:
-        turns: curvature times the edge's length, at even arc lengths (SAMPLES + 1,).
-    """
-    density = turns + max(1.0, float(turns.mean()))
-    share = np.concatenate([[0.0], np.cumsum(density[1:] + density[:-1])])
-    return np.interp(np.linspace(0.0, 1.0, PIECES + 1), share / share[-1], np.linspace(0.0, 1.0, SAMPLES + 1))
+    return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length, sides), side
 
 
 def _pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:

@@ -47,7 +47,7 @@ ACCURACY = 1e-12
 """Accuracy of the fraction of a step."""
 
 TOGETHER = 1e-6
-"""Part of a step in which two changes are a single change, as in a symmetric mechanism."""
+"""Part of a step in which two changes are a single change, as in a symmetric mechanism, or a change and the end."""
 
 STEPS = 60
 """Most states on which an event is located by slopes."""
@@ -297,4 +297,5 @@ def _opening(pair: int, solve: Callable[[float], Solved]) -> list[Change]:
     share = located(event)
     if force(share) > LET_GO * begin:
         raise NotConvergedError("a contact lets go under force")
-    return [Change(share, pairs=frozenset([pair]), first=pair)]
+    # a force that vanishes at the end of the step is below RELEASED a little earlier
+    return [Change(share if share < 1.0 - TOGETHER else 1.0, pairs=frozenset([pair]), first=pair)]

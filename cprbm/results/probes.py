@@ -84,13 +84,15 @@ def _reaction(statics: Statics, of: str) -> tuple[Array, float]:
     Joints of two moving parts exert opposite forces on the parts, and cancel.
     """
     view, scene = statics.view, statics.view.scene
-    held = {
-        name: drive.point if isinstance(drive, DisplacementDrive) else drive.body
-        for name, drive in scene.drives.items()
+    parts = {
+        **{
+            name: drive.point if isinstance(drive, DisplacementDrive) else drive.body
+            for name, drive in scene.drives.items()
+        },
+        **{name: getattr(scene.beams[stop.beam], stop.end).point for name, stop in scene.stops.items()},
+        **{name: of for name, pin in scene.pins.items() if of in pin.points},
     }
-    held |= {name: getattr(scene.beams[stop.beam], stop.end).point for name, stop in scene.stops.items()}
-    held |= {name: of for name, pin in scene.pins.items() if of in pin.points}
-    sources = {of, *(name for name, part in held.items() if part == of)}
+    sources = {of, *(name for name, part in parts.items() if part == of)}
     moving = {*scene.beams, *view.mechanism.bodies}
     found = [each for each in statics.forces if each.source in sources and each.target in moving]
     slides = of in scene.bodies and not sources - {of}

@@ -79,7 +79,7 @@ def test_smooth_edges_are_closed_and_right_to_fourth_order():
         angle = np.linspace(0.0, 2.0 * np.pi, pieces + 1)
         points = np.column_stack([np.cos(angle), np.sin(angle)])
         tangents = np.column_stack([-np.sin(angle), np.cos(angle)])
-        curve = Frames(m).smooth_edge("round", "block", points, tangents, angle)
+        curve = Frames(m).smooth_edge("round", "block", points, tangents, 2.0 * np.pi)
         assert curve.closed
         errors.append(np.abs(np.abs(at(curve, np.array(m.rest), np.linspace(0.0, 6.28, 997))) - 1.0).max())
     assert errors[0] / errors[1] > 2.0**3.8
