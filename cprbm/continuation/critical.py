@@ -13,8 +13,11 @@ F        largest force of a link
 =======  ====================================================================================
 
 At a fold the branch turns back: τ grows along φ, and κ² is linear in t_c − t.  At a bifurcation another branch
-crosses: τ has no part in φ, and κ is linear in t_c − t.  After the opening of a stop or a contact the state may be no
-minimum: κ is positive just before, and the moment or the force vanishes.
+crosses: τ has no part in φ, and κ is linear in t_c − t.  An imperfection smaller than the least step bends the branch
+to one side: τ grows along φ there, but κ is linear before.
+
+After the opening of a stop or a contact the state may be no minimum: κ is positive just before, and the moment or the
+force vanishes.
 
 Beams may be unable to change their length.  A straight beam between held ends has forces n, ν, and a repeated row.
 Their work in a change df* of the rows, −Σ ν df*, is Σ n times the elongation asked of the beam.  A beam in bending
@@ -47,6 +50,9 @@ NEAR = 50.0
 
 APART = 2.0
 """Times as far as the bracket is wide: the earlier state from which κ is extrapolated."""
+
+EARLIER, EVEN = 4.0, 0.1
+"""Times as far as the bracket is wide of a third state, and difference of two zeros of κ, over the states' distance."""
 
 TAUT, GROWN = 4, 4.0
 """Minima over which F grows so many times before it may be said to have no limit."""
@@ -168,12 +174,13 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
         change: of the targets on the whole way.
     """
     last, width = trail[-1], beyond - trail[-1].t
-    mode = softest(last.solved)
-    earlier = _earlier(trail, width)
-    fold = _along(last.solved, mode, change) > FOLDING
-    if earlier is None:
+    mode, earlier, first = softest(last.solved), _earlier(trail, width), _earlier(trail, EARLIER * width)
+    if earlier is None or first is None:
         return None
-    zero = _vanishes(lambda solved: softest(solved).curvature ** (2.0 if fold else 1.0), earlier, last)
+    zero = _vanishes(_curvature, earlier, last)
+    even = abs(zero - _vanishes(_curvature, first, earlier)) < EVEN * (earlier.t - first.t)
+    fold = _along(last.solved, mode, change) > FOLDING and not even
+    zero = _vanishes(lambda solved: _curvature(solved) ** 2, earlier, last) if fold else zero
     if not zero - last.t <= NEAR * width:
         return None
     return CriticalPoint(
@@ -186,6 +193,10 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
         mode.curvature,
         mode.curvature,
     )
+
+
+def _curvature(solved: Solved) -> float:
+    return softest(solved).curvature
 
 
 def _along(solved: Solved, mode: Mode, change: Array) -> float:
