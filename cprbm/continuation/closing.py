@@ -241,7 +241,9 @@ def contact_changes(
     changes = _closing(before, after, closing, solve) if closing else []
     if (apart_pairs(before, new - old) or (closing and not changes)) and turned(before, after) > SMALLEST_TURN:
         raise NotConvergedError("a contact closes on the way to a state that the contact alone leads to")
-    return sum((_opening(pair, solve) for pair in sorted(old - new)), changes)
+    openings = sum((_opening(pair, solve) for pair in sorted(old - new)), list[Change]())
+    pairs = frozenset(each.first for each in openings if each.share < min(openings).share + TOGETHER)
+    return changes + [opening._replace(pairs=pairs) for opening in openings if opening.first in pairs]
 
 
 def _closing(before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float], Solved]) -> list[Change]:

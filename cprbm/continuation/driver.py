@@ -208,7 +208,7 @@ class Driver:
                 solved = solve(change.share)
                 if change.share < 1.0 - TOGETHER and pressing(self.solved) - pressing(solved) - change.pairs:
                     # a pair opens before, and is back at the end of the step: a shorter step sees the pair
-                    return self._trial(way, at, largest)
+                    return StepError(Ending.STEP_TOO_SMALL, "a contact opens and is back in a load step", too_long=True)
             elif closing:
                 # the contact alone leads to the end of a short step
                 solved = self._equilibrium(replace(start, target=solved.state.target))
