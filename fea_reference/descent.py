@@ -69,9 +69,9 @@ def descend(
     """
     saved = march.saved()
     # a contact opening under tight penalties may stay closed under loose ones; a minimum under loose penalties may be
-    # none under tight ones
+    # none under tight ones, as the critical state itself
     energy = _descend(march, load, target, span, critical, beside, loose=critical.loss is not Loss.CONTACT)
-    if energy is None or march.curvature > 0.0:
+    if energy is None or (march.curvature > 0.0 and march.largest_motion(march.system, critical.system.z) > _KICKS[0]):
         return energy
     march.restore(saved)
     return _descend(march, load, target, span, critical, beside, loose=False)

@@ -37,9 +37,9 @@ from cprbm_scene import ACTIVE, Array, CircleContact, Contact, RigidContact, Sce
 
 Rigid = CircleContact | RigidEdge
 
-DEEP, SUNK = 0.05, 2e-3
+DEEP, SUNK, ROUGH = 0.05, 2e-3, 1e-5
 """Largest penetration, and largest gap under a force: of thick beams over the thickness, also without a declared
-contact; of lines over the longest beam."""
+contact; of lines over the longest beam.  At least the distance of a polygon from a circle as long counts."""
 
 ALIGNED, LINE_ALIGNED = 0.98, 0.8
 """Least cosine of the angle between a contact force and the normal, of thick beams and of lines."""
@@ -108,7 +108,11 @@ def _pressing(state: StationState, name: str, on: str) -> Iterator[Finding]:
 def _surface(state: StationState, contact: Contact, on: str, s: Array) -> tuple[Array, Array]:
     """Distances a of the own surface, and largest errors of a distance, (k,), m."""
     t, sunk = state.beams[on].thickness(s), np.full(len(s), 2.0 * SUNK * state.longest)
-    return (0.5 * t, DEEP * t) if contact.thick else (sunk * isinstance(contact, RigidContact), sunk)
+    return (
+        (0.5 * t, np.maximum(DEEP * t, ROUGH * state.longest))
+        if contact.thick
+        else (sunk * isinstance(contact, RigidContact), sunk)
+    )
 
 
 def _gap(state: StationState, contact: Contact, on: str, x: Complex, s: Array, way: Complex | complex = 0j) -> Array:

@@ -184,7 +184,11 @@ def _criticals(first: Solved, image: Image, other: Solved) -> Iterator[Departure
         why = f"{len(mine.critical)} critical values became {len(theirs.critical)}"
         yield Departure("critical", "", math.nan, math.inf, why=why)
         return
-    largest = {stage.name: max(map(abs, stage.stations)) for stage in other.scene.stages}
+    stages = other.scene.stages
+    largest = {
+        stage.name: max(abs(value) for each in stages if each.steps == stage.steps for value in each.stations)
+        for stage in stages
+    }
     meshes = [[0.0] * len(theirs.critical)] * 2
     if image.discretised_anew and theirs.critical:
         meshes = [critical_uncertainties(first), critical_uncertainties(other)]

@@ -248,6 +248,7 @@ def test_a_dome_under_a_plunger_leans_aside_and_comes_back():
         for answer in (found, cprbm.answer(scene, cprbm.Settings(links=40)))
     )
     assert found.completed, found.sentence
+    assert [critical.loss for critical in found.critical if critical.stage == "on"] == [Loss.BIFURCATION]
     assert forces == pytest.approx(expected, rel=1e-3, abs=1e-9)
 
 
