@@ -65,12 +65,12 @@ from fea_reference.hermite import (
     shape_slopes,
     shapes,
 )
-from fea_reference.leaning import Chain
+from fea_reference.leaning import LINE, Chain
 from fea_reference.model import BeamLoadPart, BeamMomentPart, Model, OnBeam
 from fea_reference.state import State
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-_LINE = 7  # unknowns of an element's line
+_TURN = np.array([0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0])[:, None]  # derivatives of ψ₂ − ψ₁ by these unknowns
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +81,7 @@ class BeamLoad:
         part, value, force: the load, its value and forces (2, k), zero for a moment.
         place: points of application (2, k); work: W.
         chain: chain rule from the unknowns of element lines to all unknowns.
+        local_gradient: derivatives (m, k) of W by the unknowns of the element lines.
         gradient, hessian: derivatives (M, k) and (M, M, k) of W by the unknowns ``dofs`` (M, k).
     """
 
@@ -90,6 +91,7 @@ class BeamLoad:
     place: Array
     work: float
     chain: Chain
+    local_gradient: Array
     gradient: Array
     hessian: Array
 
@@ -120,8 +122,8 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
         bubble = _bubble(placed.line, placed.local, _compliances(model, part, placed), force)
         local, twice, place = local + bubble.local, twice + bubble.twice, place + bubble.moved
         done += 0.5 * float((bubble.moved * force).sum())
-    chain = model.separate_chain(beam, placed.e, z)
-    return BeamLoad(part, value, force, place, done, chain, chain.gradient(local), chain.hessian(twice, local))
+    chain = model.separate_chain(beam, placed.elements, z)
+    return BeamLoad(part, value, force, place, done, chain, local, chain.gradient(local), chain.hessian(twice, local))
 
 
 def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> BeamLoad:
@@ -140,7 +142,8 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     local, twice = value * local, value * twice
     work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
     no_force, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
-    return BeamLoad(part, value, no_force, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
+    by, by_twice = chain.gradient(local), chain.hessian(twice, local)
+    return BeamLoad(part, value, no_force, place, work, chain, local, by, by_twice)
 
 
 def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:
@@ -193,13 +196,15 @@ def _section_angle(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]
 
 @dataclass(frozen=True, slots=True)
 class _LoadPlaces:
-    """Places of a load: beam elements ``e``, their numbers ``local`` in ``line``, ξ* and ξ, all (k,).
+    """Places of a load: their numbers ``local`` of an element in ``line``, ξ* and ξ, all (k,).
 
-    ``slope`` and ``second`` (k,) are the derivatives of ξ* by the difference of the nodes' ψ.
+    ``slope`` and ``second`` (k,) are the derivatives of ξ* by the difference of the nodes' ψ. ``elements`` (c,) are the
+    beam's elements with a load, and ``begins`` (c,) the first of the consecutive places in each element.
     """
 
     line: NeutralLine
-    e: Index
+    elements: Index
+    begins: Index
     local: Index
     at: Array
     xi: Array
@@ -212,29 +217,32 @@ class _LoadPlaces:
         return self.line.at(self.local + self.at)[0]
 
     def projected_gradient(self, f: Array) -> tuple[Array, Array]:
-        """Derivatives (7, k) and (7, 7, k) of f·x(ξ*) for forces (2, k) by the unknowns of the element lines."""
-        line, e, H, H1 = self.line, self.local, shapes(self.at), shape_slopes(self.at)
+        """Derivatives (7, c) and (7, 7, c) of f·x(ξ*), summed in every element, by the unknowns of the element lines.
+
+        The forces ``f`` are (2, k). A distributed load keeps ξ* = ξ.
+        """
+        line, e, H = self.line, self.local, shapes(self.at)
+        speed, speed_twice = _speed(line, e[self.begins])
+        at_places = projected_gradient(f, H, line, e), projected_hessian(f, H, line, e)
+        local, twice = (np.add.reduceat(derivatives, self.begins, axis=-1) for derivatives in at_places)
+        by, both = _by_nodes(local, speed), twice[LINE - 1][:, None] * speed[None, :]
+        by_twice = twice + both + both.transpose(1, 0, 2) + local[LINE - 1] * speed_twice
+        by_twice[LINE - 1] = by_twice[:, LINE - 1] = 0.0
+        if not self.second.any():
+            return by, np.asarray(by_twice)
         _, x1, x2 = line.at(e + self.at)
         ahead, bent = (f * x1).sum(axis=0), (f * x2).sum(axis=0)
-        moved, turned = np.zeros((_LINE, e.size)), np.zeros((_LINE, _LINE, e.size))
-        moved[[2, 5]] = -self.slope, self.slope
-        turned[2, 2] = turned[5, 5] = self.second
-        turned[2, 5] = turned[5, 2] = -self.second
-        speed, speed_twice = _speed(line, e)
-        local, twice = projected_gradient(f, H, line, e), projected_hessian(f, H, line, e)
-        by, by1 = _by_nodes(local, speed), _by_nodes(projected_gradient(f, H1, line, e), speed)
-        both = twice[_LINE - 1][:, None] * speed[None, :]
-        by_twice = twice + both + both.transpose(1, 0, 2) + local[_LINE - 1] * speed_twice
-        by_twice[_LINE - 1] = by_twice[:, _LINE - 1] = 0.0
+        by1 = _by_nodes(projected_gradient(f, shape_slopes(self.at), line, e), speed)
+        moved, turned = self.slope * _TURN, _TURN[:, None] * _TURN
         both = by1[:, None] * moved[None, :]
-        twice = by_twice + both + both.transpose(1, 0, 2)
-        return by + ahead * moved, twice + bent * moved[:, None] * moved[None, :] + ahead * turned
+        by_twice += both + both.transpose(1, 0, 2) + (bent * self.slope**2 + ahead * self.second) * turned
+        return by + ahead * moved, np.asarray(by_twice)
 
 
 def _by_nodes(local: Array, speed: Array) -> Array:
     """Derivatives (7, k) by the nodes alone, from ``local`` (7, k) with the last row by the speed."""
-    by = local + local[_LINE - 1] * speed
-    by[_LINE - 1] = 0.0
+    by = local + local[LINE - 1] * speed
+    by[LINE - 1] = 0.0
     return np.asarray(by)
 
 
@@ -243,29 +251,28 @@ def _speed(line: NeutralLine, e: Index) -> tuple[Array, Array]:
     _, _, turn, stretch = _chord(line, e)
     l = np.abs(line.nodes[e + 1] - line.nodes[e])  # noqa: E741 - the chord's length
     turned, L = line.angles[e + 1] - line.angles[e], line.lengths[e]
-    ends = np.zeros((_LINE, 1))
-    ends[2], ends[5] = -1.0, 1.0
-    both = stretch[:, None] * ends[None, :]
+    both = stretch[:, None] * _TURN[None, :]
     _, by_l, by_turned, by_both, by_turned_twice = chord_speed_excess(l, L, turned)
     twice = by_l * l * turn[:, None] * turn[None, :] + by_both * l * (both + both.transpose(1, 0, 2))
-    return by_l * l * stretch + by_turned * ends, twice + by_turned_twice * ends[:, None] * ends[None, :]
+    return by_l * l * stretch + by_turned * _TURN, twice + by_turned_twice * _TURN[:, None] * _TURN[None, :]
 
 
 def _load_places(model: Model, part: BeamLoadPart, z: State) -> _LoadPlaces:
     """Places of a load in state ``z``; for a distributed load ξ* = ξ, as both halves of an element compensate."""
     beam = model.beams[part.beam]
     e, xi = model.line(beam, z).locate(part.zeta)
-    local = 2 * np.arange(e.size)
-    line = model.separate_elements(beam, e, z)
+    elements, begins, number = np.unique(e, return_index=True, return_inverse=True)
+    local = 2 * number
+    line = model.separate_elements(beam, elements, z)
     g = np.zeros_like(xi) if part.distributed else xi * (1.0 + xi * (2.0 * xi - 3.0)) / 48.0
     turned = line.angles[local + 1] - line.angles[local]
-    return _LoadPlaces(line, e, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
+    return _LoadPlaces(line, elements, begins, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
 
 
 def _compliances(model: Model, part: BeamLoadPart, placed: _LoadPlaces) -> tuple[Array, Array]:
     """c and c_t (k,) at the places of forces."""
     beam, elements, xi = model.beams[part.beam], model.elements, placed.xi
-    e = beam.elements.start + placed.e
+    e = beam.elements.start + placed.elements
     L, sigma = elements.length[e], 1.0 - elements.slip[:, e].sum(axis=0)
     bending = beam.bending(part.zeta / model.line(beam, model.start).n)
     uv = xi * (1.0 - xi)
@@ -296,7 +303,7 @@ def _chord(line: NeutralLine, e: Index) -> tuple[Array, Array, Array, Array]:
     dx, dy = line.points[:, e + 1] - line.points[:, e]
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
     t, n = np.stack([dx, dy]) / l, np.stack([-dy, dx]) / l
-    turn, stretch = np.zeros((_LINE, l.size)), np.zeros((_LINE, l.size))
+    turn, stretch = np.zeros((LINE, l.size)), np.zeros((LINE, l.size))
     turn[:2], turn[3:5] = -n / l, n / l
     stretch[:2], stretch[3:5] = -t / l, t / l
     return t, n, turn, stretch
@@ -309,7 +316,7 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
         unit_load = _beam_moment(model, part, 1.0, z)
         return model.spread(unit_load.dofs, unit_load.gradient)
     placed = _load_places(model, part, z)
-    chain = model.separate_chain(beam, placed.e, z)
+    chain = model.separate_chain(beam, placed.elements, z)
     return model.spread(chain.dofs, chain.gradient(placed.projected_gradient(part.forces)[0]))
 
 

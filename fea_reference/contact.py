@@ -51,7 +51,7 @@ import numpy as np
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.clearance import JOINED, overlap_at_rest
 from cprbm_scene.curve_records import MEETING
-from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
+from cprbm_scene.statement import BeamContact, FreeEnd, Scene, SelfContact
 from fea_reference.carrying import cut_ends, merge_zones, split_zones
 from fea_reference.edge import edge_of
 from fea_reference.facing import Borders, Tapers, borders, lean
@@ -143,7 +143,7 @@ def _contact_ends(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -
     """Ends of ``beam`` (0 start, 1 end), except neighbours of an end of ``other`` on the same body."""
     own_ends, other_ends = (
         [
-            (_holder(scene, end), place)
+            (None if isinstance(end, FreeEnd) else frame_of(scene, scene.body_of(end.point)), place)
             for end, place in zip(
                 (scene.beams[part.name].start, scene.beams[part.name].end),
                 model.line(part, model.start).nodes[[0, -1]],
@@ -168,11 +168,6 @@ def _contact_range(line: NeutralLine, other: NeutralLine, joined: float) -> tupl
     shared = np.abs(line.nodes[[0, -1], None] - other.nodes[[0, -1]]).min(axis=1) <= MEETING
     first, last = np.where(shared, min(joined / float(line.lengths.min()), line.n), 0.0)
     return float(first), max(float(first), float(line.n - last))
-
-
-def _holder(scene: Scene, end: BeamEnd) -> str | None:
-    """Body that an end moves with, the same for all fixed bodies; None for a free end."""
-    return None if isinstance(end, FreeEnd) else frame_of(scene, scene.body_of(end.point))
 
 
 def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> Tapers | None:

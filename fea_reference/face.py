@@ -225,16 +225,12 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     surface = g, view.turned(near.normal), near.bend, near.distance
     contact = rigid_touch(model, face, penalty, quadrature, z, zones, places, surface)
     ends = np.isin(zones.intervals, [end for end in (0.0, float(view.line.n)) if end not in face.own])
-    bends = _bends(zones, kinks)
+    # numbers and ends of the intervals that meet the next interval at a corner
+    begins, ends_of_intervals = zones.intervals.T
+    bends = [(i, float(end)) for i, end in enumerate(ends_of_intervals) if float(end) in kinks and end in begins]
     sharp = bool(ends.any()) or bool(bends) or bool(near.corner.any())
     corners = partial(_corner_terms, view, zones, bends, kinks, penalty, quadrature) if bends else None
     return replace(contact, extra_hessian=corners, sharp=sharp)
-
-
-def _bends(zones: Zones, kinks: dict[float, np.int64]) -> list[tuple[int, float]]:
-    """Numbers and ends of the intervals that meet the next interval at a corner."""
-    bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
-    return [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
 
 
 def _corner_terms(

@@ -167,7 +167,7 @@ def _follow(
                 return critical or _restore_uncertain_end(march, uncertain) or turn
             continue
         if march.least_gap(there.system) < 0.0:
-            event = _next_change(march, branch, here, length)
+            event = sign_change(branch, here, length, lambda there: march.least_gap(there.system))
             if event is None:
                 return turn
             critical = _apply_change(march, load, event)
@@ -268,11 +268,6 @@ def _distance(branch: Branch, here: BranchPoint, there: BranchPoint) -> float:
     """Distance of two points in the metric of the arc length."""
     difference = (there.system.z.values - here.system.z.values) + (there.system.z.rest - here.system.z.rest)
     return float(np.sqrt(difference @ (branch.weights * difference) + branch.weight * (there.value - here.value) ** 2))
-
-
-def _next_change(march: March, branch: Branch, here: BranchPoint, length: float) -> BranchPoint | None:
-    """Point just behind the first change of a contact or stop within ``length``."""
-    return sign_change(branch, here, length, lambda there: march.least_gap(there.system))
 
 
 def _apply_change(march: March, load: int, event: BranchPoint) -> CriticalPoint | None:

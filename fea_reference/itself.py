@@ -35,7 +35,6 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from cprbm_scene.answer import Array, Ints
-from fea_reference.edge import Edge
 from fea_reference.facing import Tapers, borders
 from fea_reference.hermite import NeutralLine, as_plane
 from fea_reference.neighbours import nearest
@@ -98,8 +97,9 @@ def survey_self(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     knots = () if tapers is None else tapers.first.knots
     zeta = np.union1d(_samples(line, tapers, reach), np.array(knots))
     i, j = _elements_near(line, line.at(zeta)[0], reach)
-    steepest = 0.0 if tapers is None else _steepest(tapers.first, line)
-    places, partners, i = _partners(line, zeta, i, j, steepest, roles)
+    # largest sine of a lean, without the change of the line's speed
+    slope = 0.0 if tapers is None else float(np.abs(tapers.first.slope(np.array(knots))).max())
+    places, partners, i = _partners(line, zeta, i, j, 2.0 * slope / float(line.lengths.min()), roles)
     there = at(places, partners)
     usable = there.found & (np.abs(there.g + T) < reach)
     places, there, i = places[usable], there.chosen(usable), i[usable]
@@ -151,11 +151,6 @@ def _partners(
             beyond = at_end & (f_end > 0.0)
             least, share = least | beyond, np.where(beyond, place, share)
     return zeta[i[least]], (j + share)[least], i[least]
-
-
-def _steepest(edge: Edge, line: NeutralLine) -> float:
-    """Largest sine of a lean, without the change of the line's speed."""
-    return 2.0 * float(np.abs(edge.slope(np.array(edge.knots))).max()) / float(line.lengths.min())
 
 
 def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:

@@ -21,6 +21,7 @@ between clamp and contact. The error would be of first order in the element. The
 contact surface.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -30,7 +31,9 @@ from cprbm_scene.answer import Array
 from fea_reference.element import Chords
 from fea_reference.hermite import Index
 
-_LINE = 7  # unknowns of an element's line
+LINE = 7
+"""Unknowns of an element's line."""
+
 TANGENTS = (2, 5)
 """Positions of the tangent angles among these."""
 
@@ -63,11 +66,14 @@ def tangent_angles(span: Span, theta: Array, shear: Array) -> Array:
 class Lean:
     """Share (k,) of the shear angle of ``elements`` (k,), counted among all, in a tangent angle.
 
-    ``row`` is the tangent angle among a line's unknowns, ``begin`` the first of the element's six rows of M.
+    ``row`` is the tangent angle among a line's unknowns, ``line`` the number of the line. ``at`` are the rows of M of
+    the element's six unknowns, ``own`` the elements counted in their beam.
     """
 
     row: int
-    begin: int
+    line: int
+    at: tuple[int, ...]
+    own: Index
     elements: Index
     share: Array
 
@@ -77,84 +83,87 @@ class Chain:
     """Chain rule from the unknowns of element lines, and of a body, to all unknowns, at k places.
 
     Attributes:
-        dofs: unknowns (M, k); the first m belong to the lines' own elements and the body, with θ in place of ψ.
+        dofs: unknowns (M, k); the first ``count`` belong to the lines' own elements and the body, with θ in place of
+            ψ, the others to nodes beside the elements.
+        count: number m of the former.
         leans: contributions to the tangent angles ψ among the m.
-        shares: line, first of the six rows of M for an element's nodes, and the element (k,) at every place.
+        lines: elements (k,) of every line, counted in their beam.
         chords: chords of all elements.
     """
 
     dofs: Index
+    count: int
     leans: tuple[Lean, ...]
-    shares: tuple[tuple[int, int, Index], ...]
+    lines: tuple[Index, ...]
     chords: Chords
 
     @cached_property
-    def _leans(self) -> list[tuple[int, slice, Array, Lean]]:
-        """Tangent angle, rows of M and derivatives (6, k) of every contribution."""
-        by = self.chords.shear_by
-        return [
-            (lean.row, slice(lean.begin, lean.begin + 6), lean.share * by[:, lean.elements], lean)
-            for lean in self.leans
-        ]
+    def _by(self) -> Array:
+        """Derivatives (k, m, M) of the lines' unknowns by all unknowns."""
+        rows, places = self.dofs.shape
+        by = np.zeros((places, self.count, rows))
+        by[:, range(self.count), range(self.count)] = 1.0
+        for lean in self.leans:
+            by[:, lean.row, lean.at] += (lean.share * self.chords.shear_by[:, lean.elements]).T
+        return by
 
     def gradient(self, local: Array) -> Array:
         """Derivatives (M, k) by all unknowns from derivatives ``local`` (m, k) by the lines' unknowns."""
-        total = np.zeros(self.dofs.shape)
-        total[: len(local)] = local
-        for row, here, by, _ in self._leans:
-            total[here] += local[row] * by
-        return total
+        return np.asarray(np.einsum("mk,kma->ak", local, self._by)) if self.leans else local
 
     def hessian(self, local: Array, gradient: Array) -> Array:
         """Second derivatives (M, M, k) by all unknowns, by the chain rule.
 
         ``local`` (m, m, k) and ``gradient`` (m, k) are second and first derivatives by the lines' unknowns.
         """
-        m, size = len(gradient), self.dofs.shape
-        half = np.zeros((m, *size))
-        half[:, :m] = local
-        for row, here, by, _ in self._leans:
-            half[:, here] += local[:, row, None] * by
-        total = np.zeros((size[0], *size))
-        total[:m] = half
-        for row, here, by, lean in self._leans:
-            total[here] += by[:, None] * half[row]
-            total[here, here] += gradient[row] * lean.share * self.chords.shear_by_twice[:, :, lean.elements]
-        return total
+        if not self.leans:
+            return local
+        total = self._by.transpose(0, 2, 1) @ (np.ascontiguousarray(local.transpose(2, 0, 1)) @ self._by)
+        for lean in self.leans:
+            twice = gradient[lean.row] * lean.share * self.chords.shear_by_twice[:, :, lean.elements]
+            total[:, np.array(lean.at)[:, None], lean.at] += twice.T
+        return total.transpose(1, 2, 0)
 
-    def local(self, step: Array, m: int) -> Array:
+    def local(self, step: Array) -> Array:
         """Step (m, k) of the lines' unknowns, with tangent angles for rotations, from a ``step`` (size,) of all."""
         steps = step[self.dofs]
-        own = steps[:m].copy()
-        for row, here, by, _ in self._leans:
-            own[row] += (by * steps[here]).sum(axis=0)
-        return own
+        return np.asarray(np.einsum("kma,ak->mk", self._by, steps)) if self.leans else steps
+
+    def on_first_nodes(self, local: Array) -> Iterator[tuple[int, Index, Array]]:
+        """Line, elements (k,) and derivatives (3, k) by the elements' first nodes, of every contribution.
+
+        ``local`` (m, k) are derivatives by the lines' unknowns. A lean contributes at the node of its own element.
+        """
+        for i, own in enumerate(self.lines):
+            yield i, own, local[LINE * i : LINE * i + 3]
+        for lean in self.leans:
+            yield lean.line, lean.own, local[lean.row] * lean.share * self.chords.shear_by[:3, lean.elements]
 
 
 @lru_cache(maxsize=64)
 def places(
     spans: tuple[Span, ...], elements: tuple[bytes, ...], body: tuple[int, ...]
-) -> tuple[Index, tuple[Lean, ...], tuple[tuple[int, int, Index], ...]]:
-    """Unknowns, leans and shares of a chain of k places on one or two lines and of a ``body`` (0 or 3), in this order.
+) -> tuple[Index, int, tuple[Lean, ...], tuple[Index, ...]]:
+    """Unknowns, their own number, leans and elements of a chain of k places on one or two lines and of a ``body``.
 
-    ``elements`` are the bytes of the elements (k,) of the places, counted in every line's beam.
+    The ``body`` has 0 or 3 unknowns. ``elements`` are the bytes of the elements (k,) of the places, counted in every
+    line's beam.
     """
-    numbers = [np.frombuffer(of_line, dtype=np.int64) for of_line in elements]
+    numbers = tuple(np.frombuffer(of_line, dtype=np.int64) for of_line in elements)
     dofs = [span.dofs[:, e] for span, e in zip(spans, numbers, strict=True)]
     dofs.append(np.repeat(np.array(body, dtype=np.int64)[:, None], numbers[0].size, axis=1))
-    shares = [(i, _LINE * i, e) for i, e in enumerate(numbers)]
     leans: list[Lean] = []
-    row = _LINE * len(spans) + len(body)
+    count = row = LINE * len(spans) + len(body)
     for i, (span, e) in enumerate(zip(spans, numbers, strict=True)):
         if not span.slips:
             continue
+        nodes = [tuple(range(begin, begin + 3)) for begin in (LINE * i, LINE * i + 3, row, row + 3)]
         for tangent, neighbour in enumerate((np.maximum(e - 1, 0), np.minimum(e + 1, span.dofs.shape[1] - 1))):
-            at_end = neighbour == e
+            at_end, angle = neighbour == e, LINE * i + TANGENTS[tangent]
             own = np.where(at_end, 0.0 if span.welded[tangent] else 1.0, 0.5)
-            line, angle = _LINE * i, _LINE * i + TANGENTS[tangent]
-            beside = Lean(angle, row, span.part.start + neighbour, np.where(at_end, 0.0, 0.5))
-            leans += [Lean(angle, line, span.part.start + e, own), beside]
-            dofs.append(span.dofs[:6, neighbour])
-            shares.append((i, row, neighbour))
-            row += 6
-    return np.concatenate(dofs), tuple(leans), tuple(shares)
+            beside = (nodes[1] + nodes[3] if tangent else nodes[2] + nodes[0], neighbour, np.where(at_end, 0.0, 0.5))
+            for at, element, share in ((nodes[0] + nodes[1], e, own), beside):
+                leans.append(Lean(angle, i, at, element, span.part.start + element, share))
+            dofs.append(span.dofs[3 * tangent : 3 * tangent + 3, neighbour])
+        row += 6
+    return np.concatenate(dofs), count, tuple(leans), numbers

@@ -6,7 +6,7 @@ The stepped parameter is a load, a drive or a share of the assembly; λ is its v
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -77,6 +77,7 @@ _FINE_ITERATIONS = 3
 _SOFT = 0.1  # times the stiffest penalty that the elements resolve
 _STOP_TENSION = 1e-9  # times the largest force or EI/length: tension of a stop at which the stop opens
 _DIFFERENCE = 1e-4  # steps: increment for finite-difference rates of gaps
+_PATH_ROOTS = 3  # roots sought on the path between equilibria
 _INSIDE = 0.01  # closing tolerances: distance from the edge of the tolerance to the value sought
 _SWITCH_MARGIN = 1e-8  # rad, or forces: margin within which a stop counts as switched
 _AIM = 0.84  # times the requested penetration: aim for a pair of beams, so that the error follows a power law
@@ -563,17 +564,28 @@ class March:
         def gaps(value: float) -> list[float]:
             if value not in known:
                 low, high = max(v for v in known if v < value), min(v for v in known if v > value)
-                system = self.solve(load, value, self._between(load, (low, known[low]), (high, known[high]), value))
+                system = self.solve(load, value, self._path(load, known, low, high)(value))
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
             return self.gaps(known[value])
 
-        def sought(value: float, which: int) -> float:
+        def sought(value: float, which: int, path: Callable[[float], State] | None) -> float:
             # a gap within half the closing tolerance counts as zero; the aim lies inside the tolerance, because beyond
             # its edge an end without thickness would be on the other side
-            gap = gaps(value)[which]
+            gap = (gaps(value) if path is None or value in known else self._gaps_at(path(value)))[which]
             return 0.0 if 0.0 <= gap <= 0.5 * tolerances[which] else gap - _INSIDE * tolerances[which]
+
+        def root_between(low: float, high: float, which: int) -> float:
+            # first on the path between two equilibria, where a gap costs no equilibrium
+            for _ in range(_PATH_ROOTS):
+                path = self._path(load, known, low, high)
+                root = float(brentq(sought, low, high, (which, path), xtol=xtol, rtol=1e-11))
+                there = sought(root, which, None)
+                if there == 0.0:
+                    return root
+                low, high = (root, high) if there > 0.0 else (low, root)
+            return float(brentq(sought, low, high, (which, None), xtol=xtol, rtol=1e-11))
 
         tolerances = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCH_MARGIN for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
@@ -582,7 +594,7 @@ class March:
             for _ in gaps(clear):
                 pairs = list(zip(gaps(clear), gaps(beyond), strict=True))
                 first = min((i for i, pair in enumerate(pairs) if pair[1] < 0.0), key=lambda i: _straight(*pairs[i]))
-                root = float(brentq(sought, clear, beyond, (first,), xtol=xtol, rtol=1e-11))
+                root = root_between(clear, beyond, first)
                 if gaps(root)[first] > tolerances[first]:  # a jump: the overlap is visible only beyond a certain size
                     over = [value for value in known if gaps(value)[first] <= 0.0]
                     root = over[int(np.argmin(np.abs(np.array(over) - root)))]
@@ -593,13 +605,17 @@ class March:
             return None
         return None
 
-    def _between(self, load: int, low: tuple[float, System], high: tuple[float, System], value: float) -> State:
-        """Predicted state at a ``value`` between two equilibria, a Hermite cubic from their path tangents."""
-        (start, before), (end, after) = low, high
+    def _gaps_at(self, z: State) -> list[float]:
+        """Gaps in a state near the current system."""
+        return self.gaps(replace(self.system, z=z))
+
+    def _path(self, load: int, known: Mapping[float, System], low: float, high: float) -> Callable[[float], State]:
+        """Predicted state by value between two known equilibria, a Hermite cubic from their path tangents."""
+        before, after = known[low], known[high]
         rates = self.rate(load, before), self.rate(load, after)
-        u = (value - end) / (end - start)
-        second, third = path_terms(self.model, before.z, after.z, rates, end - start)
-        return advance(self.model, after.z, (value - end) * rates[1] + u**2 * second + u**3 * third)
+        second, third = path_terms(self.model, before.z, after.z, rates, high - low)
+        terms = np.array([third, second, (high - low) * rates[1], np.zeros(self.model.size)])
+        return lambda value: advance(self.model, after.z, np.polyval(terms, (value - high) / (high - low)))
 
     def _close_tightly(self, load: int, increment: float) -> None:
         """Tighten the other penalties after a closing and locate the closing again.

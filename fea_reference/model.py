@@ -40,7 +40,7 @@ from fea_reference.curves import length, sample
 from fea_reference.element import Chords, ElementForces, Elements, chords, forces, reference
 from fea_reference.hermite import Index, NeutralLine, chord_speed_excess
 from fea_reference.known import Memory
-from fea_reference.leaning import TANGENTS, Chain, Lean, Span, places, tangent_angles
+from fea_reference.leaning import LINE, TANGENTS, Chain, Lean, Span, places, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
@@ -345,8 +345,8 @@ class Model:
     def separate_chain(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from the elements (k,) of :meth:`separate_elements` to the unknowns."""
         span, all_of_own = self.spans[beam.name], np.ones(e.size)
-        leans = tuple(Lean(row, 0, span.part.start + e, all_of_own) for row in TANGENTS) if span.slips else ()
-        return Chain(span.dofs[:, e], leans, ((0, 0, e),), self.chords(z))
+        own = tuple(Lean(row, 0, tuple(range(6)), e, span.part.start + e, all_of_own) for row in TANGENTS)
+        return Chain(span.dofs[:, e], LINE, own if span.slips else (), (e,), self.chords(z))
 
     def chain(self, on: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
         """Chain rule from line elements (k,) of beams, and a ``body``'s three unknowns, to the unknowns."""
@@ -355,7 +355,7 @@ class Model:
 
     def chain_of_sections(self, beam: BeamPart, e: Index, z: State) -> Chain:
         """Chain rule from :meth:`line_of_sections` to the unknowns, at elements (k,) of a beam."""
-        return Chain(self.spans[beam.name].dofs[:, e], (), ((0, 0, e),), self.chords(z))
+        return Chain(self.spans[beam.name].dofs[:, e], LINE, (), (e,), self.chords(z))
 
     def spread(self, dofs: Index, values: Array) -> Array:
         """The sum (size,) of ``values`` at unknowns ``dofs``, arrays of the same shape."""
@@ -564,8 +564,8 @@ def _on_beam(
     begin, end = (share * n for share in load.along)
     fence = np.unique(np.clip(np.arange(n + 1), begin, end))
     half = 0.5 * np.diff(fence)
-    zeta = (fence[:-1] + half + half * _POINTS[:, None]).ravel()
-    weights = (half * _WEIGHTS[:, None]).ravel() * beam.length / n
+    zeta = (fence[:-1, None] + half[:, None] * (1.0 + _POINTS)).ravel()
+    weights = (half[:, None] * _WEIGHTS).ravel() * beam.length / n
     forces = direction[:, None] * weights
     return BeamLoadPart(name, number, zeta, forces, begin, end, direction, units.force / units.length)
 

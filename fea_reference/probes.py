@@ -156,7 +156,7 @@ def _touch(march: March, name: str) -> Touch | None:
 def _centre(march: March, touch: Touch) -> float:
     """Arc length of the pressure's centre on the beam that the scene names first."""
     weight = np.hypot(*touch.force)
-    zeta = touch.zeta_m if _is_exchanged(touch) else touch.zeta
+    zeta = touch.zeta_m if isinstance(touch.pair, Pair) and touch.pair.turned else touch.zeta
     return float(weight @ _arc_lengths(march, touch, zeta) / weight.sum())
 
 
@@ -169,11 +169,6 @@ def _ends(march: March, touch: Touch) -> Array:
         nearest = np.argmin(np.abs(touch.zeta[:, None] - zeta), axis=0)
         zeta = pair.places_facing(first, second, zeta, touch.zeta_m[nearest]).zeta_m
     return np.sort(_arc_lengths(march, touch, zeta))
-
-
-def _is_exchanged(touch: Touch) -> bool:
-    """True if the beam that the scene names first is the pair's second."""
-    return isinstance(touch.pair, Pair) and touch.pair.turned
 
 
 def _arc_lengths(march: March, touch: Touch, zeta: Array) -> Array:

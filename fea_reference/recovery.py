@@ -70,18 +70,13 @@ def _end_forces(model: Model, system: System, beam: BeamPart) -> tuple[Array, Ar
     parts = [_NOTHING, *(part for touch in system.touches for part in _on_beam(touch, number))]
     place, point, force = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
     for touch in system.touches:
-        gradient = touch.gradient
-        for of_line, row, elements in touch.chain.shares:
+        for of_line, elements, forces in touch.chain.on_first_nodes(touch.local_gradient):
             if number == (touch.pair.second if of_line == 1 and isinstance(touch.pair, Pair) else touch.pair.first):
-                for i in range(3):
-                    np.add.at(ends[i], elements, gradient[row + i])
-
+                np.add.at(ends.T, elements, forces.T)
     for load in system.loads:
-        if load.part.beam != number:
-            continue
-        for _, row, elements in load.chain.shares:
-            for i in range(3):
-                np.add.at(ends[i], elements, -load.gradient[row + i])
+        if load.part.beam == number:
+            for _, elements, forces in load.chain.on_first_nodes(load.local_gradient):
+                np.add.at(ends.T, elements, -forces.T)
     return ends, place, point, force
 
 

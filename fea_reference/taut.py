@@ -44,7 +44,9 @@ class TurningPoint:
 
 def continue_beyond(march: March, turn: TurningPoint, target: float) -> bool:
     """Step on beyond a turning point; True on success, else the state is unchanged."""
-    branch, there = turn.branch, _turning_place(turn)
+    branch, sense = turn.branch, np.sign(turn.before.rate)
+    # the point with τ = 0
+    there = sign_change(branch, turn.before, turn.length, lambda there: float(sense * there.rate))
     rate = None if there is None else _tangent_beyond(branch, there)
     if there is None or rate is None:
         return False
@@ -61,12 +63,6 @@ def continue_beyond(march: March, turn: TurningPoint, target: float) -> bool:
         size *= 0.25
     march.restore(saved)
     return False
-
-
-def _turning_place(turn: TurningPoint) -> BranchPoint | None:
-    """The point with τ = 0."""
-    sense = np.sign(turn.before.rate)
-    return sign_change(turn.branch, turn.before, turn.length, lambda there: float(sense * there.rate))
 
 
 def _tangent_beyond(branch: Branch, there: BranchPoint) -> Array | None:

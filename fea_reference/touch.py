@@ -269,7 +269,12 @@ class Touch:
     @property
     def gradient(self) -> Array:
         """Derivative (M, c) of the contact energy by the unknowns."""
-        return self.chain.gradient(self._summed(-self.pushes * self.gap_by()))
+        return self.chain.gradient(self.local_gradient)
+
+    @property
+    def local_gradient(self) -> Array:
+        """Derivative (m, c) of the contact energy by the unknowns of the lines and the body."""
+        return self._summed(-self.pushes * self.gap_by())
 
     @property
     def mean(self) -> Array:
@@ -287,7 +292,7 @@ class Touch:
     def predicted_forces(self, step: Array) -> Array:
         """Point forces (k,) after a ``step`` (size,) of the unknowns, to first order."""
         by = self.gap_by()
-        local = np.repeat(self.chain.local(step, len(by)), self.points_per_place, axis=1)
+        local = np.repeat(self.chain.local(step), self.points_per_place, axis=1)
         return np.asarray(self.pushes - self.stiffness * (by * local).sum(axis=0))
 
     def _summed(self, at_points: Array) -> Array:

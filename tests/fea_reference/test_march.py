@@ -54,7 +54,8 @@ def test_of_three_gaps_the_first_to_close_is_found_though_another_seemed_to_be()
         gaps=gaps,
         open=[namedtuple("Pair", "scale")(0.043)] * 3,
         model=SimpleNamespace(stops=()),
-        _between=lambda *way: None,
+        _path=lambda *way: lambda value: value,
+        _gaps_at=gaps,
     )
     assert March._first_touch(march, 0, {0.0: 0.0, 1.0: 1.0})[0] == pytest.approx(0.37, abs=1e-9)
 
