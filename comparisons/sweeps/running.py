@@ -221,10 +221,10 @@ class Runner:
         """
         queue, suspects = deque(tasks), deque[Task]()
         pending: dict[Future[Outcome], Task] = {}
-        executor, settings = self.workers.executor, (self.solvers, self.limit)
 
         def submit(task: Task) -> None:
-            pending[executor.submit(solve_limited, task.scene, self.choices, task.asked, *settings)] = task
+            future = self.workers.submit(solve_limited, task.scene, self.choices, task.asked, self.solvers, self.limit)
+            pending[future] = task
 
         try:
             while queue or pending or suspects:
