@@ -71,8 +71,14 @@ class Commands(click.Group):
         """The group; with a ``callback`` a command line without a command calls the callback."""
         self.headings = {heading: tuple(commands) for heading, commands in headings.items()}
         every = [command for commands in self.headings.values() for command in commands]
-        alone = callback is not None
-        super().__init__(name, every, callback=callback, params=[*params], help=text, invoke_without_command=alone)
+        super().__init__(
+            name,
+            every,
+            callback=callback,
+            params=[*params],
+            help=text,
+            invoke_without_command=callback is not None,
+        )
 
     def tool_of(self, name: str) -> str:
         """Key of a command in ``TOOLS``; empty for a command that is no developers' tool."""

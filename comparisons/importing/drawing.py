@@ -98,8 +98,14 @@ def _read_table(path: Path, unit: str) -> Drawing:
         raise SceneError([Mistake("", each.found, each.allowed, str(path)) for each in error.mistakes]) from None
     if len(points) < 2:
         raise _refused(path, f"{len(points)} points", "at least two points")
-    places = np.pad(points, ((0, 0), (0, 1)))
-    return Drawing((DrawnCurve(path.stem, 1, f"{len(points)} points", places, None),), {})
+    curve = DrawnCurve(
+        tag=path.stem,
+        number=1,
+        kind=f"{len(points)} points",
+        points=np.pad(points, ((0, 0), (0, 1))),
+        directions=None,
+    )
+    return Drawing((curve,), {})
 
 
 def _with_ezdxf(path: Path, unit: str) -> Drawing:
@@ -125,9 +131,14 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
             points.setdefault(layer, []).append(np.array(entity.dxf.location))
         elif {part.dxftype() for part in parts} <= _PLACES.keys():
             for place, part in enumerate(parts, len(curves) + 1):
-                tag = layer if layer != "0" else f"curve{place}"
-                points_along = np.array([tuple(each) for each in _PLACES[part.dxftype()](part)])
-                curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", points_along, None))
+                curve = DrawnCurve(
+                    tag=layer if layer != "0" else f"curve{place}",
+                    number=place,
+                    kind=f"{kind} {entity.dxf.handle}",
+                    points=np.array([tuple(each) for each in _PLACES[part.dxftype()](part)]),
+                    directions=None,
+                )
+                curves.append(curve)
         else:
             refused.append(
                 f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), "

@@ -90,8 +90,11 @@ def _cluster(scheduler: str) -> Iterator[Workers]:
     with client, client.get_executor(pure=False) as pool:
         try:
             client.wait_for_workers(1, timeout=ARRIVE)
-            submit = partial(pool.submit, _call, program())
-            yield Workers(submit, lambda: PER_THREAD * sum(client.nthreads().values()), (KilledWorker,))
+            yield Workers(
+                submit=partial(pool.submit, _call, program()),
+                window=lambda: PER_THREAD * sum(client.nthreads().values()),
+                lost=(KilledWorker,),
+            )
         except TimeoutError:
             raise refused(f"no worker after {ARRIVE:g} s", "a scheduler with workers") from None
         except OtherVersionError as error:
