@@ -116,8 +116,7 @@ def compare(runs: Runs, look: Callable[[Scene, Answer], Audit] = audit) -> Compa
         all(map(ends_at_critical, runs.pair)) and bool(criticals) and criticals[-1].word is Word.AGREE
     )
     verdict = _verdict(runs, rows, criticals, audits, completed=completed)
-    found = () if lacking else _reactions(runs)
-    return Comparison(runs, rows, verdict, criticals, found, audits=audits)
+    return Comparison(runs, rows, verdict, criticals, reactions=() if lacking else _reactions(runs), audits=audits)
 
 
 def _verdict(
@@ -167,9 +166,15 @@ def _branch_verdicts(rows: Sequence[Row]) -> Iterator[BranchVerdict]:
     """Word of every branch, in the order of the path."""
     for branch in dict.fromkeys((row.stage, row.branch) for row in rows if row.branch is not None):
         mine = [row for row in rows if (row.stage, row.branch) == branch]
-        between, word = {row.station: row.events.between for row in mine}, worst_of(row.word for row in mine)
-        ends = next(iter(between)), next(reversed(between))
-        yield BranchVerdict(*branch, *ends, len(between), sum(between.values()), word)
+        between = {row.station: row.events.between for row in mine}
+        yield BranchVerdict(
+            *branch,
+            first=mine[0].station,
+            last=mine[-1].station,
+            stations=len(between),
+            near=sum(between.values()),
+            word=worst_of(row.word for row in mine),
+        )
 
 
 def _reactions(runs: Runs) -> tuple[WorkEnergyReaction, ...]:

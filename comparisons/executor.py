@@ -8,6 +8,7 @@ Every child ends with the process that asked for the work, also where that proce
 semaphores, which on Linux are files in ``/dev/shm``; in a container this folder may be absent or read-only.
 """
 
+import copyreg
 import gc
 import logging
 import os
@@ -25,7 +26,7 @@ from weakref import WeakSet
 
 from comparisons import logs
 from comparisons.choices import Choices
-from cprbm_scene import Answer, Mistake, Scene, SceneError
+from cprbm_scene import Answer, Scene, SceneError
 
 T = TypeVar("T")
 P = ParamSpec("P")
@@ -45,7 +46,8 @@ Job = tuple[Solver, Scene, Choices]
 Decided = Callable[[Answer, Answer], bool]
 """Whether the answers to the first two jobs make the other jobs useless."""
 
-_Result = Answer | tuple[Mistake, ...]
+# by itself pickle rebuilds an exception from the text alone
+copyreg.pickle(SceneError, lambda error: (SceneError, (error.mistakes,)))
 
 
 class TimeLimitError(RuntimeError):
@@ -242,10 +244,13 @@ class Crew:
             SceneError: a solver refuses a job, which cancels the other jobs.
         """
         if self.pool is None:
-            return _collected(enumerate(_solve(*job) for job in jobs), len(jobs), decided)
+            return _collected(enumerate(solver(scene, choices) for solver, scene, choices in jobs), len(jobs), decided)
         # The finest runs take longest and stand last: begun right behind the first two jobs, they leave no worker idle.
-        places = [*range(len(jobs))[:2], *reversed(range(len(jobs))[2:])]
-        futures = {self.pool.submit(call_limited, None, _solve, *jobs[place]): place for place in places}
+        numbered = [*enumerate(jobs)]
+        futures = {
+            self.pool.submit(call_limited, None, solver, scene, choices): place
+            for place, (solver, scene, choices) in (*numbered[:2], *reversed(numbered[2:]))
+        }
         try:
             return _collected(((futures[each], each.result()) for each in as_completed(futures)), len(jobs), decided)
         finally:
@@ -270,26 +275,16 @@ def crew_of(count: int) -> Iterator[Crew]:
         yield Crew(pool)
 
 
-def _collected(results: Iterable[tuple[int, _Result]], count: int, decided: Decided) -> list[Answer]:
+def _collected(results: Iterable[tuple[int, Answer]], count: int, decided: Decided) -> list[Answer]:
     """The answers in the order of their places, logged as they come."""
     answers: dict[int, Answer] = {}
-    for place, result in results:
-        if isinstance(result, tuple):
-            raise SceneError(result)
-        answers[place] = result
+    for place, answer in results:
+        answers[place] = answer
         _LOG.info(
             "%s: run %d of %d is done: %s, %s after %.2f s",
-            *(result.scene, len(answers), count, result.solver, result.ending.name, result.seconds),
+            *(answer.scene, len(answers), count, answer.solver, answer.ending.name, answer.seconds),
             extra={"done": len(answers), "whole": count},
         )
         if place < 2 and {0, 1} <= answers.keys() and decided(answers[0], answers[1]):
             return [answers[0], answers[1]]
     return [answers[place] for place in range(count)]
-
-
-def _solve(solver: Solver, scene: Scene, choices: Choices) -> _Result:
-    """The answer, or the mistakes as plain records, since pickle rebuilds an exception from the text alone."""
-    try:
-        return solver(scene, choices)
-    except SceneError as error:
-        return error.mistakes

@@ -225,7 +225,7 @@ def sweep(
     folder = None if out is None else Path(out)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-    with workers.workers_on(place) if isinstance(place, str) else nullcontext(workers.Workers(place)) as pool:
+    with workers.workers_on(place) if isinstance(place, str) else nullcontext(workers.Workers(place.submit)) as pool:
         runner = running.Runner(pool, chosen, Solvers(), at_most, folder)
         found = runner.run(running.Sweep(scene, points.in_file_units(scene, axes), tasks))
     if folder is not None:

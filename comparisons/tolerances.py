@@ -128,15 +128,37 @@ class Tolerance:
         return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."
 
 
-class Limits(NamedTuple):
-    """The finest answer with limits as values, uncertainties of all values with a law, and the probes with a limit."""
+class Level(NamedTuple):
+    """Answers of a solver at N and coarser.
 
-    answer: Answer
-    uncertainties: Uncertainties
-    probes: tuple[str, ...]
+    Attributes:
+        answers: by N; the complete answers alone, unless there is a trouble.
+        even: at N, of the CPRBM in ``auto``; with limits as values, unless there is a trouble.
+        uncertainties: of all values with a law.
+        probes: names of the probes with limits as values.
+        paper: the answer at N in ``paper``, if the CPRBM is asked in ``paper``.
+        trouble: why there are no limits; else empty.
+    """
+
+    answers: Mapping[int, Answer]
+    even: Answer
+    uncertainties: Uncertainties = frozendict()
+    probes: tuple[str, ...] = ()
+    paper: Answer | None = None
+    trouble: str = ""
+
+    @property
+    def answer(self) -> Answer:
+        """The answer at N in the wanted formulation."""
+        return self.paper or self.even
+
+    def runs(self, solver: SolverName) -> dict[str, Answer]:
+        """Runs of a comparison by name: the answer, the answer at N/2, and beside ``paper`` the limits in ``auto``."""
+        even = {} if self.paper is None else {f"{solver} auto": self.even}
+        return {solver: self.answer, f"{solver} finer": self.answers[max(self.answers) // 2], **even}
 
 
-def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
+def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Level:
     """Limits of answers by N: complete answers at the finest N, at half of it, and at any further N."""
     fine = answers[n := max(answers)]
     series = [{size: station_of(answers[size], at.stage, at.value) for size in sorted(answers)} for at in fine.stations]
@@ -173,7 +195,7 @@ def limits_of(scene: Scene, answers: Mapping[int, Answer]) -> Limits:
                 f"certificates are of N = {n}.",
             ),
         )
-    return Limits(answer, frozendict(uncertainties), probes)
+    return Level(answers, answer, frozendict(uncertainties), probes)
 
 
 def _value(probe: Probe, by_size: Mapping[int, StationAnswer]) -> tuple[Array, Error | None, bool]:
@@ -199,28 +221,6 @@ def _value(probe: Probe, by_size: Mapping[int, StationAnswer]) -> tuple[Array, E
 
 
 @dataclass(frozen=True, slots=True)
-class _Level:
-    """Answers of a solver at N and coarser.
-
-    Attributes:
-        n: N; answers: by N.
-        answer: at N, with limits as values unless a run ended early.
-        limits: of the answers; None in trouble.
-    """
-
-    n: int
-    answers: Mapping[int, Answer]
-    answer: Answer
-    limits: Limits | None
-
-    def runs(self, solver: SolverName) -> dict[str, Answer]:
-        """Runs of a comparison by name: the answer, the answer at N/2, and beside ``paper`` the limits in ``auto``."""
-        assert self.limits is not None
-        even = {} if self.answer is self.limits.answer else {f"{solver} auto": self.limits.answer}
-        return {solver: self.answer, f"{solver} finer": self.answers[self.n // 2], **even}
-
-
-@dataclass(frozen=True, slots=True)
 class _Search:
     """A solver and its question; ``reference`` is the answer with the denominators, None for the solver's own."""
 
@@ -231,7 +231,7 @@ class _Search:
     memory: AnswerMemory
     reference: Answer | None = None
 
-    def run(self) -> tuple[_Level, Tolerance]:
+    def run(self) -> tuple[Level, Tolerance]:
         """The last level of the search, and the result."""
         n, solved, end = FIRST[self.solver], set[int](), ""
         while not end:
@@ -246,7 +246,7 @@ class _Search:
             end = found.end(LARGEST_PAPER if self.in_paper else LARGEST[self.solver])
         return level, replace(found, solved=tuple(sorted(solved)), ended="" if found.met else end)
 
-    def at(self, n: int) -> tuple[_Level, Tolerance]:
+    def at(self, n: int) -> tuple[Level, Tolerance]:
         """The level of an N, and the result with N as the last number.
 
         Raises:
@@ -258,17 +258,27 @@ class _Search:
         even = [(own, self.scene, replace(self.choices_at(size), formulation="auto")) for size in ordered]
         paper = [(own, self.scene, self.choices_at(n))] if self.in_paper else []
         solved = self.memory.answers([*even, *paper])
-        value = solved.pop() if paper else None
+        in_paper = solved.pop() if paper else None
         answers = dict(zip(ordered, solved, strict=True))
         problems = {size: next(iter(problem_sentences(self.scene, each)), "") for size, each in answers.items()}
-        if trouble := problems[n // 2] or problems[n]:
-            found = Tolerance(self.tolerance, self.solver, n, None, math.inf, trouble, (), tuple(ordered))
-            return _Level(n, answers, value or answers[n], None), found
-        whole = {size: answer for size, answer in answers.items() if not problems[size]}
-        limits = limits_of(self.scene, whole)
-        level, probes = _Level(n, whole, value or limits.answer, limits), () if self.in_paper else limits.probes
-        worst = self._worst(level, limits)
-        return level, Tolerance(self.tolerance, self.solver, n, *worst, "", probes, tuple(ordered))
+        trouble = problems[n // 2] or problems[n]
+        worst: tuple[Row | None, float] = None, math.inf
+        if trouble:
+            level = Level(answers, answers[n], paper=in_paper, trouble=trouble)
+        else:
+            whole = {size: answer for size, answer in answers.items() if not problems[size]}
+            level = limits_of(self.scene, whole)._replace(paper=in_paper)
+            worst = self._worst(level)
+        found = Tolerance(
+            self.tolerance,
+            self.solver,
+            n,
+            *worst,
+            trouble=trouble,
+            probes=() if self.in_paper else level.probes,
+            solved=tuple(ordered),
+        )
+        return level, found
 
     def choices_at(self, n: int) -> Choices:
         """The choices at N."""
@@ -279,13 +289,17 @@ class _Search:
         """True for the CPRBM in ``paper``, whose values are never limits."""
         return self.solver == "cprbm" and self.choices.formulation == "paper"
 
-    def _worst(self, level: _Level, limits: Limits) -> tuple[Row | None, float]:
+    def _worst(self, level: Level) -> tuple[Row | None, float]:
         """The row with the largest f, and f, of a value in ``paper`` with the distance from ``auto``."""
-        reference = self.reference or limits.answer
+        reference = self.reference or level.even
         answers = {**level.runs("cprbm"), "fea": reference, "fea finer": reference}
-        settled = {"cprbm": limits.uncertainties}
-        runs = Runs(self.scene, self.choices.kinematics_of(self.scene), answers, settled=settled)
-        pair = limits.answer, level.answers[level.n // 2]
+        runs = Runs(
+            self.scene,
+            self.choices.kinematics_of(self.scene),
+            answers,
+            settled={"cprbm": level.uncertainties},
+        )
+        pair = level.even, answers["cprbm finer"]
         stated = ((row, f) for row in rows_of(runs) if (f := _fraction(row, pair)) is not None)
         return max(stated, key=lambda each: each[1], default=(None, 0.0))
 
@@ -346,7 +360,7 @@ def runs_within(
     of_cprbm = replace(of_fea, solver="cprbm", reference=fea.answer)
     cprbm, links = of_cprbm.run()
     at_last = replace(of_fea.choices_at(elements.n), links=links.n)
-    if cprbm.limits is None or fea.limits is None:
+    if cprbm.trouble or fea.trouble:
         runs = paired(scene, at_last, replace(solvers, solid=None), memory)
     else:
         results: dict[str, Answer | str] = {**cprbm.runs("cprbm"), **fea.runs("fea")}
@@ -355,9 +369,13 @@ def runs_within(
             results["cprbm perturbed"] = replace(of_cprbm, scene=driven, reference=None).at(links.n)[0].answer
         if solvers.exact and theory == "bending":
             (results["exact"],) = memory.answers([(solvers.exact, scene, of_fea.choices)])
-        settled = {"cprbm": cprbm.limits.uncertainties, "fea": fea.limits.uncertainties}
-        runs = runs_of(scene, theory, results, settled=settled)
+        runs = runs_of(
+            scene,
+            theory,
+            results,
+            settled={"cprbm": cprbm.uncertainties, "fea": fea.uncertainties},
+        )
     if solvers.solid is not None:
-        solid, of_solid = replace(of_fea, solver="solid", reference=fea.answer if fea.limits else None).run()
+        solid, of_solid = replace(of_fea, solver="solid", reference=None if fea.trouble else fea.answer).run()
         return replace(runs, solids=tuple(solid.answers.values())), (links, elements, of_solid)
     return runs, (links, elements)

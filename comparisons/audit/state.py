@@ -173,8 +173,11 @@ class StationState:
     @cached_property
     def at_rest(self) -> "StationState":
         """All lines and bodies at rest."""
-        beams = {name: replace(beam, moves=False) for name, beam in self.beams.items()}
-        return replace(self, beams=beams, station=replace(self.station, bodies={}))
+        return replace(
+            self,
+            beams={name: replace(beam, moves=False) for name, beam in self.beams.items()},
+            station=replace(self.station, bodies={}),
+        )
 
     def rotation(self, body: str) -> float:
         """Rotation of a body, rad; zero of a fixed body."""
@@ -284,8 +287,11 @@ def states_of(scene: Scene, answer: Answer) -> Iterator[StationState]:
                 name: DeformedBeam(beam, scene.materials[beam.material], length(beam.curve), station.beams[name])
                 for name, beam in scene.beams.items()
             }
-            theory, values = (
-                answer.settings.get("kinematics", scene.theory),
-                scene.values_at(station.stage, station.value),
+            yield StationState(
+                scene,
+                station,
+                beams,
+                values=scene.values_at(station.stage, station.value),
+                stage=stage_of(scene, station.stage),
+                kinematics=str(answer.settings.get("kinematics", scene.theory)),
             )
-            yield StationState(scene, station, beams, values, stage_of(scene, station.stage), str(theory))

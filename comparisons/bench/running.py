@@ -128,11 +128,12 @@ class Contender:
 def contenders(solvers: Solvers, choices: Choices) -> tuple[Contender, ...]:
     """The project's own methods, in the order of ``OURS``."""
     auto, paper = (_ours(solvers.cprbm, replace(choices, formulation=name)) for name in ("auto", "paper"))
-    fea = _ours(solvers.fea, choices)
     return (
         Contender("auto", "cprbm", "auto", "CPRBM auto", auto, 5120, ratios=("both",), look=("#1f5fa8", "o")),
         Contender("paper", "cprbm", "paper", "CPRBM paper", paper, 640, look=("#5aa0e0", "s")),
-        Contender("fea", "fea", None, f"FEA {choices.kinematics}", fea, 1280, look=("#c8321e", "^")),
+        Contender(
+            "fea", "fea", None, f"FEA {choices.kinematics}", _ours(solvers.fea, choices), 1280, look=("#c8321e", "^")
+        ),
     )
 
 

@@ -92,13 +92,22 @@ def _precision(rows: Rows, measures: Sequence[Measure]) -> Figure:
     for measure in measures:
         shown = {method: [row for row in mine if row.errors.get(measure, 0.0) > 0.0] for method, mine in rows.items()}
         points = {method: [(row.median("both"), row.errors[measure]) for row in mine] for method, mine in shown.items()}
-        texts = [
-            (size_text(mine[place].count), points[method][place],
-             {"xytext": (5.0, below), "color": method.look[0], "fontsize": 8.0})
-            for method, mine in shown.items() if mine for place, below in {0: 3.0, len(mine) - 1: -10.0}.items()
-        ]  # fmt: skip
-        lines = [_line(method, mine) for method, mine in points.items() if mine]
-        panels.append(Panel(_MEASURED[measure], lines, texts=texts))
+        panels.append(
+            Panel(
+                _MEASURED[measure],
+                lines=[_line(method, mine) for method, mine in points.items() if mine],
+                texts=[
+                    (
+                        size_text(mine[place].count),
+                        points[method][place],
+                        {"xytext": (5.0, below), "color": method.look[0], "fontsize": 8.0},
+                    )
+                    for method, mine in shown.items()
+                    if mine
+                    for place, below in {0: 3.0, len(mine) - 1: -10.0}.items()
+                ],
+            )
+        )
     caption, abscissa = "Error against time, each point a number of links or elements.", "seconds of set-up and solve"
     return chart("bench-precision", caption, abscissa, panels, panel=(6.4, 4.0), decades=(), legend=("upper center", 3))
 
@@ -110,13 +119,23 @@ def _growth(rows: Rows) -> Figure:
         "seconds of set-up and solve": lambda row: row.median("both"),
         "iterations, all stations": lambda row: max(row.iterations, 1),
     }
-    panels = [
-        Panel(name, [_line(method, [(row.n, of(row)) for row in mine], names[method]) for method, mine in rows.items()])
-        for name, of in ordinates.items()
-    ]
     sizes = sorted({row.n for mine in rows.values() for row in mine})
     caption, abscissa = "Median time and iterations against links or elements.", "links or elements per beam, N"
-    return chart("bench", caption, abscissa, panels, panel=(6.4, 3.2), decades=sizes, legend=("upper center", 2))
+    return chart(
+        "bench",
+        caption,
+        abscissa,
+        panels=[
+            Panel(
+                name,
+                [_line(method, [(row.n, of(row)) for row in mine], names[method]) for method, mine in rows.items()],
+            )
+            for name, of in ordinates.items()
+        ],
+        panel=(6.4, 3.2),
+        decades=sizes,
+        legend=("upper center", 2),
+    )
 
 
 def _line(method: Contender, points: Sequence[tuple[float, float]], name: str = "") -> Line:
@@ -171,17 +190,21 @@ def _tolerance(measured: Session) -> float | None:
 
 def _fastest(measured: Session, clocked: Clocked) -> Table:
     labels = {each.name: each.label for each in measured.methods()}
-    rows = tuple(
-        (f"{percent(one['error'])} of {one['measure']}", labels.get(one["fastest"], NOTHING), number(one["ahead"]),
-         *(number(one["seconds"].get(name)) for name in labels))
-        for one in standings(measured) if one["clocked"] == clocked
-    )  # fmt: skip
     return Table(
         f"Fastest at an error, {_CLOCKED[clocked]}",
-        ("error", "fastest", "times ahead", *labels.values()),
-        rows,
-        "Seconds, between two sizes by the straight line through the logarithms of error and time; a dash where no "
-        "measured size reaches the error for good. Times ahead: seconds of the second method over the fastest.",
+        headers=("error", "fastest", "times ahead", *labels.values()),
+        rows=tuple(
+            (
+                f"{percent(one['error'])} of {one['measure']}",
+                labels.get(one["fastest"], NOTHING),
+                number(one["ahead"]),
+                *(number(one["seconds"].get(name)) for name in labels),
+            )
+            for one in standings(measured)
+            if one["clocked"] == clocked
+        ),
+        note="Seconds, between two sizes by the straight line through the logarithms of error and time; a dash where "
+        "no measured size reaches the error for good. Times ahead: seconds of the second method over the fastest.",
     )
 
 
@@ -191,17 +214,16 @@ def _ratios(measured: Session) -> Table:
         for each in measured.methods()
         for clocked in each.ratios
     }
-    rows = [
-        (size_text(one["n"]), *(number(one[key]) for key in (*labels, "iterations_per_station")))
-        for one in ratios(measured)
-    ]
     return without_empty(
         Table(
             "How many times longer than CPRBM paper on the same problem",
-            ("N", *labels.values(), "iterations per station"),
-            tuple(rows),
-            "Medians over medians: the solve over our solve, else set-up and solve over ours; a dash where a row does "
-            "not count. Set-up begins with the scene for the CPRBM, with the discretised problem for the peers. "
+            headers=("N", *labels.values(), "iterations per station"),
+            rows=tuple(
+                (size_text(one["n"]), *(number(one[key]) for key in (*labels, "iterations_per_station")))
+                for one in ratios(measured)
+            ),
+            note="Medians over medians: the solve over our solve, else set-up and solve over ours; a dash where a row "
+            "does not count. Set-up begins with the scene for the CPRBM, with the discretised problem for the peers. "
             "Iterations are those of CPRBM paper.",
         )
     )
@@ -229,8 +251,11 @@ def _omissions(measured: Session) -> Table:
     sizes = dict[tuple[str, str], list[str]]()
     for name, count, why in measured.omissions():
         sizes.setdefault((name, why), []).append("all" if count is None else size_text(count))
-    rows = tuple((name, ", ".join(mine), why) for (name, why), mine in sizes.items())
-    return Table("Left out", ("method", "N", "why"), rows)
+    return Table(
+        "Left out",
+        headers=("method", "N", "why"),
+        rows=tuple((name, ", ".join(mine), why) for (name, why), mine in sizes.items()),
+    )
 
 
 def document(measured: Session) -> Plain:

@@ -51,25 +51,10 @@ def later(place: str) -> Callable[..., Any]:
     return lambda *given, **named: getattr(import_module(f"comparisons.cli.{module}"), name)(*given, **named)
 
 
-class ToolCommand(click.Command):
-    """Placeholder of a developers' tool in a list of commands: a list imports no tool.
-
-    Attributes:
-        tool: the tool's command, without the name of the program.
-    """
-
-    def __init__(self, tool: str) -> None:
-        super().__init__(tool.rpartition(" ")[2], help=TOOLS[tool][1])
-        self.tool = tool
-
-    def loaded(self) -> click.Command:
-        """The command of the tool."""
-        found: click.Command = load_tool(self.tool).command
-        return found
-
-
 class Commands(click.Group):
     """Commands under headings; the message for an unknown name lists the known names.
+
+    A developers' tool stands here by name and purpose alone, since a list imports no tool.
 
     Attributes:
         headings: the listed commands by heading.
@@ -86,13 +71,24 @@ class Commands(click.Group):
         """The group; with a ``callback`` a command line without a command calls the callback."""
         self.headings = {heading: tuple(commands) for heading, commands in headings.items()}
         every = [command for commands in self.headings.values() for command in commands]
-        alone = callback is not None
-        super().__init__(name, every, callback=callback, params=[*params], help=text, invoke_without_command=alone)
+        super().__init__(
+            name,
+            every,
+            callback=callback,
+            params=[*params],
+            help=text,
+            invoke_without_command=callback is not None,
+        )
+
+    def tool_of(self, name: str) -> str:
+        """Key of a command in ``TOOLS``; empty for a command that is no developers' tool."""
+        key = name if self.name == "cprbm" else f"{self.name} {name}"
+        return key if key in TOOLS else ""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands; the developers' tools belong to a checkout."""
         hides_tools = not is_checkout()
-        return [name for name, each in self.commands.items() if not (hides_tools and isinstance(each, ToolCommand))]
+        return [name for name in self.commands if not (hides_tools and self.tool_of(name))]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of every group under its heading."""
@@ -113,15 +109,16 @@ class Commands(click.Group):
             click.UsageError: no command has this name.
         """
         name, *rest = args
-        if absence := absence_of(f"{ctx.command_path} {name}".partition(" ")[2]):
+        tool = self.tool_of(name)
+        if absence := absence_of(tool):
             raise click.ClickException(absence)
         if name not in self.commands:
             known = self.list_commands(ctx)
             near = get_close_matches(name.casefold(), known, n=1)
             meant = f" (is {near[0]!r} meant?)" if near else ""
             ctx.fail(f"found {name!r}, no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}")
-        command = self.commands[name]
-        return name, command.loaded() if isinstance(command, ToolCommand) else command, rest
+        command: click.Command = load_tool(tool).command if tool else self.commands[name]
+        return name, command, rest
 
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,7 +10,7 @@ import click
 
 from comparisons.choices import KINEMATICS
 from comparisons.cli import options
-from comparisons.cli.commands import Commands, SolvingCommand, ToolCommand, absence_of, is_checkout, later
+from comparisons.cli.commands import TOOLS, Commands, SolvingCommand, absence_of, is_checkout, later
 from comparisons.cli.errors import exit_code
 from comparisons.cli.options import CASE, CASES, EXACT, EXPORTS, MANY, NUMERICAL, OUTPUT, SET, SIZED, VARIANTS
 
@@ -231,7 +231,7 @@ STUDIES = Commands(
             params=[*OUTPUT, options.folder(help="Folder for page, numbers and figure.")],
             help="Compare stated and true errors on every case with an exact answer.",
         ),
-        ToolCommand("study relations"),
+        click.Command("relations", help=TOOLS["study relations"][1]),
         SolvingCommand(
             "table1",
             callback=later("verdicts.study_table1"),
@@ -288,7 +288,7 @@ DEVELOPMENT = (
         "A further line states whether PyVista can draw. The last line sums up. Exit code 1 means a missing required "
         "library.",
     ),
-    ToolCommand("robustness"),
+    click.Command("robustness", help=TOOLS["robustness"][1]),
 )
 
 

@@ -53,9 +53,10 @@ def sweep(
                 click.echo(f"{grids.place_text(axes, task.point)}: {outcome.sentence}")
         click.echo(f"tables: {out / 'numbers.csv'}, {out / 'last.csv'}; page: {out / 'index.html'}")
     outcomes = [outcome for _, outcome in found.points()]
-    undecided = any(outcome.verdict == "UNDECIDED" for outcome in outcomes)
-    incomplete = any(not outcome.completed or outcome.verdict == "DIFFER" for outcome in outcomes)
-    return code_of(incomplete=incomplete, undecided=undecided)
+    return code_of(
+        incomplete=any(not outcome.completed or outcome.verdict == "DIFFER" for outcome in outcomes),
+        undecided=any(outcome.verdict == "UNDECIDED" for outcome in outcomes),
+    )
 
 
 def tolerance(

@@ -154,16 +154,18 @@ def print_section(section: Section) -> None:
         click.echo(sentence + "\n")
 
 
-def write_json(file: Path | None, data: Plain) -> None:
+def write_json(file: Path | None, data: Plain, *, finished: bool = True) -> None:
     """Write JSON to a file, or to standard output if the file is ``-``; without a file nothing.
+
+    Standard output gets ``finished`` data alone.
 
     Raises:
         OSError: the file cannot be written.
     """
-    if str(file) == "-":
-        click.echo(text_of(data), nl=False)
-    elif file is not None:
+    if file is not None and str(file) != "-":
         write(file, text_of(data))
+    elif file is not None and finished:
+        click.echo(text_of(data), nl=False)
 
 
 def print_folder(request: Request, file: str = "index.html") -> None:

@@ -4,7 +4,7 @@ After every result the page and the JSON file are whole: an interrupted command 
 """
 
 import shlex
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
@@ -33,7 +33,6 @@ from comparisons.verdict import Word
 from comparisons.writing import write
 from cprbm_scene import OffsetQuestion, Question, frozendict
 
-Result = TypeVar("Result")
 Study = TypeVar("Study")
 Step = TypeVar("Step")
 
@@ -48,26 +47,25 @@ def compare_all(request: output.Request) -> int:
     request = request.with_room("report" if "all" in request.arguments else "")
     # with a tolerance a status line with N replaces the bar
     progress = output.bar(len(questions), shown=not request.quiet and request.tol is None, noun="case")
+    finished = list[Compared]()
     with _run(request, questions) as run, progress as shown:
-        finished = _published(
-            request,
-            run,
-            shown,
-            (_compared(request, run, question) for question in shown.through(questions)),
-            document=page.document_of,
-            whole=lambda documents: {"cases": documents},
-            put=lambda folder, compared: page.put_case(folder, compared, page.figures_of(compared)),
-            page_of=page.report_page,
-            show=partial(_show, request),
-        )
+        publish = _publisher(request, run, page.report_page)
+        for question in shown.through(questions):
+            compared = _compared(request, run, question)
+            finished.append(compared)
+            publish(page.document_of(compared), partial(page.put_case, compared=compared))
+            shown.clear()
+            if request.prints:
+                _show(request, compared)
     _export(request, [found for found in finished if isinstance(found, Comparison)])
     if request.prints and not request.quiet and len(finished) > 1:
         output.print_tables([brief.summary(finished)], brief.WIDTH)
     output.print_folder(request)
     verdicts = [found.verdict for found in finished]
-    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts) or any(map(_failed_searches, finished))
-    incomplete = any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts)
-    return code_of(incomplete=incomplete, undecided=undecided)
+    return code_of(
+        incomplete=any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts),
+        undecided=any(verdict.word is Word.UNDECIDED for verdict in verdicts) or any(map(_failed_searches, finished)),
+    )
 
 
 def _compared(request: output.Request, run: Run, question: Question) -> Compared:
@@ -86,44 +84,35 @@ def _run(request: output.Request, questions: Sequence[Question]) -> AbstractCont
     return run_into(request.out, request.solvers, tuple(each.name for each in questions), request.processes)
 
 
-def _published(
+def _publisher(
     request: output.Request,
     run: Run,
-    progress: output.Bar,
-    results: Iterable[Result],
-    *,
-    document: Callable[[Result], Plain],
-    whole: Callable[[list[Plain]], Plain],
-    put: Callable[[Path, Result], page.Chapter],
     page_of: Callable[[Sequence[page.Chapter]], page.Page],
-    show: Callable[[Result], None],
-) -> list[Result]:
-    """All results; page and JSON are whole after every result, unless they would replace more.
+    *,
+    single: bool = False,
+) -> Callable[[Plain, Callable[[Path], page.Chapter]], None]:
+    """Function that publishes a finished question by its JSON, and by a function that writes files into a folder.
+
+    Page and JSON are whole after every question, unless they would replace a page or a file with more questions.
 
     Args:
-        request: of the command; run: into the folder; progress: of the questions.
-        results: of the questions of the run, in order.
-        document: JSON of a result; whole: JSON of all results.
-        put: writes a result into a folder, and returns the chapter; page_of: the page of all chapters.
-        show: prints a result.
+        request: of the command; run: of the questions.
+        page_of: page of the chapters that the functions with a folder return.
+        single: whether the JSON of a single question stands alone.
     """
-    finished, chapters, documents = list[Result](), list[page.Chapter](), list[Plain]()
-    for result in results:
-        finished.append(result)
-        documents.append(document(result))
+    documents, chapters = list[Plain](), list[page.Chapter]()
+
+    def publish(document: Plain, put: Callable[[Path], page.Chapter]) -> None:
+        documents.append(document)
         if request.out is not None:
-            chapters.append(put(request.out, result))
-        if run.may_show(run.names[: len(finished)]):
+            chapters.append(put(request.out))
+        if run.may_show(run.names[: len(documents)]):
             if request.out is not None:
                 page.put_page(request.out, page_of(chapters))
-            if request.prints:
-                output.write_json(request.json_file, whole(documents))
-        progress.clear()
-        if request.prints:
-            show(result)
-    if not request.prints:
-        output.write_json(request.json_file, whole(documents))
-    return finished
+            data = document if single and len(run.names) == 1 else {"cases": documents}
+            output.write_json(request.json_file, data, finished=len(documents) == len(run.names))
+
+    return publish
 
 
 def _show(request: output.Request, compared: Compared) -> None:
@@ -162,28 +151,20 @@ def converge_all(request: output.Request, sizes: tuple[int, ...]) -> int:
     """State limits and orders of all numbers of questions; exit code 1 for an incomplete series."""
     questions = request.questions()
     request = request.with_room("convergence" if "all" in request.arguments else "")
-
-    def show(found: tuple[Question, Section]) -> None:
-        question, section = found
-        output.print_tables(() if request.quiet else section.tables)
-        for sentence in section.sentences:
-            click.echo(f"{question.name}: {sentence}")
-
+    complete = True
     with _run(request, questions) as run, output.bar(len(questions), shown=not request.quiet) as shown:
-        choices, solved = request.choices, convergence.convergence_section
-        finished = _published(
-            request,
-            run,
-            shown,
-            ((each, solved(each, sizes, choices, run.solvers, run.crew)) for each in shown.through(questions)),
-            document=lambda found: dict(found[1].data),
-            whole=lambda documents: {"cases": documents} if len(questions) > 1 else documents[0],
-            put=lambda folder, found: page.put_chapter(folder, *found),
-            page_of=partial(page.Page, *convergence.TITLE),
-            show=show,
-        )
+        publish = _publisher(request, run, partial(page.Page, *convergence.TITLE), single=True)
+        for question in shown.through(questions):
+            section = convergence.convergence_section(question, sizes, request.choices, run.solvers, run.crew)
+            complete = complete and section.complete
+            publish(dict(section.data), partial(page.put_chapter, question=question, section=section))
+            shown.clear()
+            if request.prints:
+                output.print_tables(() if request.quiet else section.tables)
+                for sentence in section.sentences:
+                    click.echo(f"{question.name}: {sentence}")
     output.print_folder(request)
-    return code_of(incomplete=not all(section.complete for _, section in finished))
+    return code_of(incomplete=not complete)
 
 
 def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, ...]) -> None:
@@ -192,12 +173,21 @@ def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, 
     questions = request.questions()
     request = request.with_room("full-report")
     assert request.out is not None
-    parts = request.choices, () if "convergence" in without else sizes, "times" not in without, request.exact
-    found = Report(request.out, questions, *parts, request.solvers, provenance.page_origin())
+    found = Report(
+        request.out,
+        questions,
+        request.choices,
+        sizes=() if "convergence" in without else sizes,
+        times="times" not in without,
+        exact=request.exact,
+        timed=request.solvers,
+        origin=provenance.page_origin(),
+    )
     missing = found.missing()
     with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
         for question in progress.through(missing):
-            found.add(question, *found.content_of(question, partial(_compared, request, run, question), run))
+            compared = _compared(request, run, question)
+            found.add(question, compared, tuple(found.further_sections(question, run)))
         found.add_table()
     output.write_json(request.json_file, found.document() if request.json_file else {})
     for chapter in found.chapters.values() if request.prints else ():
@@ -245,13 +235,13 @@ def bench(
         opened if whole else question,
         provenance.machine(),
         {each: running.sizes_of(each, counts) for each in taking},
-        known,
-        request.choices.kinematics_of(opened),
-        repeat,
-        request.at_most,
-        whole,
-        clock,
-        absent,
+        reference=known,
+        kinematics=request.choices.kinematics_of(opened),
+        repeat=repeat,
+        at_most=request.at_most,
+        whole=whole,
+        clock=clock,
+        absent=absent,
     )
     take_steps(request, session, session.jobs(), running.Session.do, bench_section, pictures)
     failed = [row for row in session.rows() if row.contender.name in running.OURS and not row.outcome.completed]
@@ -265,9 +255,14 @@ def study_calibration(request: output.Request) -> int:
     """Compare stated with true errors; exit code 1 for a case that differs or did not complete."""
     request = request.with_room()
     with run_into(request.out, request.solvers, processes=request.processes) as run:
-        take = partial(calibration.with_case, solvers=run.solvers, crew=run.crew)
-        scenes, ends = [*map(cases.opened, cases.scenes())], (calibration.result_of, calibration.pictures)
-        found = take_steps(request, calibration.Calibration(), scenes, take, *ends)
+        found = take_steps(
+            request,
+            calibration.Calibration(),
+            [cases.opened(name) for name in cases.scenes()],
+            partial(calibration.with_case, solvers=run.solvers, crew=run.crew),
+            calibration.result_of,
+            calibration.pictures,
+        )
     verdicts = [trial.verdict for trial in found.trials]
     return code_of(incomplete=any(each.word is Word.DIFFER or not each.completed for each in verdicts))
 
@@ -294,23 +289,20 @@ def take_steps(
             for step in progress.through(steps):
                 study = take(study, step)
                 if request.out is not None or request.json_file is not None:
-                    _write_files(request, section_of(study))
+                    _write_files(request, section_of(study), finished=False)
         finally:
             section = replace(section_of(study), figures=figures_of(study))
-            _write_files(request, section)
             progress.clear()
-            if not request.prints:
-                output.write_json(request.json_file, dict(section.data))
-            elif not request.quiet:
+            _write_files(request, section, finished=True)
+            if request.prints and not request.quiet:
                 output.print_section(section)
                 output.print_folder(request, f"{section.name}.html")
     return study
 
 
-def _write_files(request: output.Request, section: Section) -> None:
+def _write_files(request: output.Request, section: Section, *, finished: bool) -> None:
     """Write the page, the figures and the JSON of a section."""
-    if request.prints:
-        output.write_json(request.json_file, dict(section.data))
+    output.write_json(request.json_file, dict(section.data), finished=finished)
     if request.out is not None:
         page.put_section(request.out, section)
         page.put_page(request.out, page.Page(section.heading, "", further=(section,)), section.name)

@@ -32,6 +32,8 @@ _PLACES: dict[str, Callable[[Any], Iterable[Iterable[float]]]] = {
 }
 """Places along the curves of a DXF drawing by the kind of the entity."""
 
+_READ_BY_GMSH = "a .geo, .step or .msh file that gmsh reads"
+
 _UNITS = {1: "in", 4: "mm", 5: "cm", 6: "m", 13: "um"}
 """Units by the number of a DXF header's variable $INSUNITS; 0 stands for a drawing without a unit."""
 
@@ -96,8 +98,14 @@ def _read_table(path: Path, unit: str) -> Drawing:
         raise SceneError([Mistake("", each.found, each.allowed, str(path)) for each in error.mistakes]) from None
     if len(points) < 2:
         raise _refused(path, f"{len(points)} points", "at least two points")
-    places = np.pad(points, ((0, 0), (0, 1)))
-    return Drawing((DrawnCurve(path.stem, 1, f"{len(points)} points", places, None),), {})
+    curve = DrawnCurve(
+        tag=path.stem,
+        number=1,
+        kind=f"{len(points)} points",
+        points=np.pad(points, ((0, 0), (0, 1))),
+        directions=None,
+    )
+    return Drawing((curve,), {})
 
 
 def _with_ezdxf(path: Path, unit: str) -> Drawing:
@@ -123,9 +131,14 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
             points.setdefault(layer, []).append(np.array(entity.dxf.location))
         elif {part.dxftype() for part in parts} <= _PLACES.keys():
             for place, part in enumerate(parts, len(curves) + 1):
-                tag = layer if layer != "0" else f"curve{place}"
-                points_along = np.array([tuple(each) for each in _PLACES[part.dxftype()](part)])
-                curves.append(DrawnCurve(tag, place, f"{kind} {entity.dxf.handle}", points_along, None))
+                curve = DrawnCurve(
+                    tag=layer if layer != "0" else f"curve{place}",
+                    number=place,
+                    kind=f"{kind} {entity.dxf.handle}",
+                    points=np.array([tuple(each) for each in _PLACES[part.dxftype()](part)]),
+                    directions=None,
+                )
+                curves.append(curve)
         else:
             refused.append(
                 f"{kind} on the layer {layer!r} (entity {entity.dxf.handle}), "
@@ -137,16 +150,13 @@ def _with_ezdxf(path: Path, unit: str) -> Drawing:
 def _with_gmsh(path: Path, unit: str) -> Drawing:
     """Tagged curves and points of a file, whose ending tells gmsh the format; gmsh knows no ``unit``."""
     try:
-        found = call_fresh(_read, str(path))
+        return call_fresh(_read, path)
     except WorkerDiedError:
-        found = "a file that ends gmsh by force"
-    if isinstance(found, str):
-        raise _refused(path, found, "a .geo, .step or .msh file that gmsh reads")
-    return found
+        raise _refused(path, "a file that ends gmsh by force", _READ_BY_GMSH) from None
 
 
-def _read(path: str) -> Drawing | str:
-    """The drawing, or gmsh's reason for refusing the file."""
+def _read(path: Path) -> Drawing:
+    """The drawing in a file; an error states gmsh's reason for refusing the file."""
     try:
         import gmsh
     except OSError as error:  # the wheel wants libraries of the desktop
@@ -154,10 +164,11 @@ def _read(path: str) -> Drawing | str:
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.open(path)
+        gmsh.open(str(path))
         return _drawing(gmsh.model)
     except Exception as error:  # gmsh raises no other class
-        return f"what gmsh does not read ({str(error).strip() or 'without a reason'})"
+        found = f"what gmsh does not read ({str(error).strip() or 'without a reason'})"
+        raise _refused(path, found, _READ_BY_GMSH) from None
     finally:
         gmsh.finalize()
 

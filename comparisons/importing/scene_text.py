@@ -248,8 +248,14 @@ def _arc(p: Array, L: float) -> Fit | None:
     if len(p) < 4 or off > EXACT * L or abs(np.sum(np.sign(turn))) < len(turn):
         return None
     start, end, centre = (_point(place, L) for place in (p[0], p[-1], p.mean(axis=0) + c))
-    way = "counterclockwise" if turn[0] > 0.0 else "clockwise"
-    return Fit(Arc(kind="arc", center=centre, start=start, end=end, direction=way), off)  # type: ignore[arg-type]
+    arc = Arc(
+        kind="arc",
+        center=centre,
+        start=start,
+        end=end,
+        direction="counterclockwise" if turn[0] > 0.0 else "clockwise",
+    )
+    return Fit(arc, off)
 
 
 def _spline(p: Array, s: Array, directions: Array | None, allowed: float) -> Fit | None:

@@ -100,16 +100,23 @@ def nearest_rows(compared: Comparison, rows: Sequence[Row], count: int) -> Table
 
 def summary(finished: Sequence[Compared]) -> Table:
     """Table with a row for every case."""
-    columns = [
-        Column[Compared]("case", "question.name"),
-        Column("word", "verdict.word.value"),
-        Column("reason", lambda compared: follow(compared, "verdict.reason.value") or ""),
-        Column("rows agreeing", _agreeing),
-        Column("largest difference over stated", lambda compared: max(compared.pressures, default=None),
-               lambda value: number(value, 2)),
-        Column("seconds", lambda compared: sum(compared.seconds.values()), lambda value: number(value, 2)),
-    ]  # fmt: skip
-    return table_of("Summary", columns, finished, "Seconds: of all runs, by the solvers' own clocks.")
+    return table_of(
+        "Summary",
+        columns=[
+            Column[Compared]("case", "question.name"),
+            Column("word", "verdict.word.value"),
+            Column("reason", lambda compared: follow(compared, "verdict.reason.value") or ""),
+            Column("rows agreeing", _agreeing),
+            Column(
+                "largest difference over stated",
+                lambda compared: max(compared.pressures, default=None),
+                lambda value: number(value, 2),
+            ),
+            Column("seconds", lambda compared: sum(compared.seconds.values()), lambda value: number(value, 2)),
+        ],
+        items=finished,
+        note="Seconds: of all runs, by the solvers' own clocks.",
+    )
 
 
 def _agreeing(compared: Compared) -> str:

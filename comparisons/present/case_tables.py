@@ -95,47 +95,50 @@ def _stage_table(scene: Scene, answer: Answer, stage: Stage) -> Table:
             for name in component_names(probe.quantity)
         }
     ended = f"{answer.ending.name}: {answer.sentence or answer.ending.value}"
-    note = ended if stations and stations[-1] is answer.stations[-1] else ""
-    title = f"{scene.title or scene.name}: {stage.name}, {answer.solver}"
-    return Table(title, tuple(columns), tuple(zip(*columns.values(), strict=True)), note)
+    return Table(
+        title=f"{scene.title or scene.name}: {stage.name}, {answer.solver}",
+        headers=tuple(columns),
+        rows=tuple(zip(*columns.values(), strict=True)),
+        note=ended if stations and stations[-1] is answer.stations[-1] else "",
+    )
 
 
 def search_table(scene: Scene, found: Sequence[Tolerance]) -> Table:
     """N by solver, with the largest uncertainty at that N."""
-    columns = [
-        Column[Tolerance]("solver", "solver"),
-        Column("N", "n"),
-        Column("extrapolated from", lambda one: ", ".join(map(str, one.extrapolated)) or None),
-        Column("largest u", lambda one: one.worst and one.fraction, percent),
-        Column("of", "worst", lambda row: f"{row.probe.name} at {load_text(scene, row.stage, row.station)}"),
-        Column("met", lambda one: "yes" if one.met else "no"),
-        Column("solved", lambda one: ", ".join(map(str, one.solved))),
-    ]
-    note = "N: links or elements per beam; the finer N of an extrapolated answer."
-    return table_of(f"N for a tolerance of {percent(found[0].asked)}" if found else "", columns, found, note)
+    return table_of(
+        f"N for a tolerance of {percent(found[0].asked)}" if found else "",
+        columns=[
+            Column[Tolerance]("solver", "solver"),
+            Column("N", "n"),
+            Column("extrapolated from", lambda one: ", ".join(map(str, one.extrapolated)) or None),
+            Column("largest u", lambda one: one.worst and one.fraction, percent),
+            Column("of", "worst", lambda row: f"{row.probe.name} at {load_text(scene, row.stage, row.station)}"),
+            Column("met", lambda one: "yes" if one.met else "no"),
+            Column("solved", lambda one: ", ".join(map(str, one.solved))),
+        ],
+        items=found,
+        note="N: links or elements per beam; the finer N of an extrapolated answer.",
+    )
 
 
 def critical_table(compared: Comparison) -> Table:
     """Critical points of both answers."""
     scene = compared.scene
     sizes = {"apart": "difference", "u CPRBM": "bounds.cprbm", "u FEA": "bounds.fea", "allowed": "allowed"}
-    columns = [
-        Column[CriticalRow]("stage", lambda row: row.stage if row.place == 0 else f"{row.stage}, {row.place + 1}"),
-        *columns_of(
-            lambda row, found: f"{with_unit(scene, found.value, row.unit, 5)}, {mechanism(found)}",
-            {"CPRBM": "cprbm", "FEA": "fea"},
-        ),
-        *columns_of(lambda row, size: distance_text(scene, size, row.unit), sizes | {"theory": "theory"}),
-        *columns_of(
-            lambda _, found: _release(scene, found), {"releases CPRBM": "cprbm", "releases FEA": "fea"}
-        ),
-        Column("word", "word.value"),
-    ]  # fmt: skip
     return table_of(
         CRITICAL_TITLE,
-        columns,
-        compared.criticals,
-        "Values of the stepped load or drive, and the mechanism of the instability; uncertainties from further "
+        columns=[
+            Column[CriticalRow]("stage", lambda row: row.stage if row.place == 0 else f"{row.stage}, {row.place + 1}"),
+            *columns_of(
+                lambda row, found: f"{with_unit(scene, found.value, row.unit, 5)}, {mechanism(found)}",
+                {"CPRBM": "cprbm", "FEA": "fea"},
+            ),
+            *columns_of(lambda row, size: distance_text(scene, size, row.unit), sizes | {"theory": "theory"}),
+            *columns_of(lambda _, found: _release(scene, found), {"releases CPRBM": "cprbm", "releases FEA": "fea"}),
+            Column("word", "word.value"),
+        ],
+        items=compared.criticals,
+        note="Values of the stepped load or drive, and the mechanism of the instability; uncertainties from further "
         "discretisations of each solver. Theory: distance of the CPRBM's loads in both theories. Released: the "
         "decrease of the potential energy in the jump.",
     )
@@ -154,42 +157,40 @@ def branch_table(compared: Comparison) -> Table:
     def span(at: BranchVerdict) -> str:
         return " to ".join(load_text(scene, at.stage, value) for value in dict.fromkeys((at.first, at.last)))
 
-    columns = [
-        Column[BranchVerdict](
-            "branch",
-            lambda at: f"{at.stage}, {'between events' if at.number == _BETWEEN else f'branch {at.number}'}",
-        ),
-        Column("stations", span),
-        Column("compared", lambda at: at.stations - at.near),
-        Column("between events", lambda at: None if at.number == _BETWEEN else at.near),
-        Column("word", lambda at: "takes no part" if at.word is None else at.word.value),
-    ]
     return table_of(
         "Branch by branch",
-        columns,
-        [*(branches if compared.criticals or len(branches) > 1 else ()), *between],
-        "A branch is compared with the same branch. Stations between the runs' loads of an event take no part.",
+        columns=[
+            Column[BranchVerdict](
+                "branch",
+                lambda at: f"{at.stage}, {'between events' if at.number == _BETWEEN else f'branch {at.number}'}",
+            ),
+            Column("stations", span),
+            Column("compared", lambda at: at.stations - at.near),
+            Column("between events", lambda at: None if at.number == _BETWEEN else at.near),
+            Column("word", lambda at: "takes no part" if at.word is None else at.word.value),
+        ],
+        items=[*(branches if compared.criticals or len(branches) > 1 else ()), *between],
+        note="A branch is compared with the same branch. Stations between the runs' loads of an event take no part.",
     )
 
 
 def _answer_critical_table(scene: Scene, answer: Answer) -> Table:
     """Critical points of an answer, passed points first."""
     passed = {id(one.end): f", passed: turned by {number(one.turned, 3)} rad" for one in answer.gone_over}
-    columns = [
-        Column[Critical]("stage", "stage"),
-        Column("at", lambda one: with_unit(scene, one.value, load_unit(scene, one.stage), 5)),
-        Column("±", lambda one: distance_text(scene, one.uncertainty, load_unit(scene, one.stage))),
-        Column("mechanism", lambda one: f"{mechanism(one)}{passed.get(id(one), '')}"),
-        Column("smallest curvature", "curvature", number),
-        Column("curvature left", "left", number),
-        Column("releases", lambda one: _release(scene, one)),
-    ]
     return table_of(
         CRITICAL_TITLE,
-        columns,
-        (*(one.end for one in answer.gone_over), *answer.critical),
-        "The smallest curvature of the energy on the feasible directions at the end of the branch, and the curvature "
-        "that is left after a contact or stop lets go. ±: on this discretisation.",
+        columns=[
+            Column[Critical]("stage", "stage"),
+            Column("at", lambda one: with_unit(scene, one.value, load_unit(scene, one.stage), 5)),
+            Column("±", lambda one: distance_text(scene, one.uncertainty, load_unit(scene, one.stage))),
+            Column("mechanism", lambda one: f"{mechanism(one)}{passed.get(id(one), '')}"),
+            Column("smallest curvature", "curvature", number),
+            Column("curvature left", "left", number),
+            Column("releases", lambda one: _release(scene, one)),
+        ],
+        items=(*(one.end for one in answer.gone_over), *answer.critical),
+        note="The smallest curvature of the energy on the feasible directions at the end of the branch, and the "
+        "curvature that is left after a contact or stop lets go. ±: on this discretisation.",
     )
 
 
@@ -235,23 +236,22 @@ def case_sections(compared: Comparison, figures: Sequence[Figure] = ()) -> tuple
 
 def claims_table(compared: Comparison) -> Table:
     """Claims of the source beside the differences found here."""
-    columns = [
-        Column[Standing]("claim", lambda at: at.claim.text or at.claim.probe),
-        Column(
-            "source",
-            lambda at: ("" if at.claim.value is None else f"{number(at.claim.value)} ± ") + percent(at.claim.bound),
-        ),
-        Column("largest here", "difference", percent),
-        Column("at", lambda at: at_station(compared.scene, at.worst.stage, at.worst.station)),
-        Column("met at", lambda at: f"{at.met} of {at.stations}"),
-        Column("", lambda at: "met" if at.holds else "not met"),
-    ]
     return table_of(
         "Claims of the source",
-        columns,
-        standings(compared.scene, compared.rows, compared.criticals),
-        "Claims take no part in the verdict. The difference of a force or a moment is here a fraction of the value at "
-        "the station; the difference from a claimed value is the CPRBM's distance.",
+        columns=[
+            Column[Standing]("claim", lambda at: at.claim.text or at.claim.probe),
+            Column(
+                "source",
+                lambda at: ("" if at.claim.value is None else f"{number(at.claim.value)} ± ") + percent(at.claim.bound),
+            ),
+            Column("largest here", "difference", percent),
+            Column("at", lambda at: at_station(compared.scene, at.worst.stage, at.worst.station)),
+            Column("met at", lambda at: f"{at.met} of {at.stations}"),
+            Column("", lambda at: "met" if at.holds else "not met"),
+        ],
+        items=standings(compared.scene, compared.rows, compared.criticals),
+        note="Claims take no part in the verdict. The difference of a force or a moment is here a fraction of the "
+        "value at the station; the difference from a claimed value is the CPRBM's distance.",
     )
 
 
@@ -265,18 +265,24 @@ def _reaction_table(compared: Comparison, drive: str, found: Sequence[WorkEnergy
     def force(value: float) -> str:
         return number(value / factor, 5)
 
-    columns = [
-        Column[WorkEnergyReaction]("station", lambda at: at_station(scene, at.stage, at.station)),
-        Column("multiplier", "multiplier", force),
-        Column("work–energy", "work_energy", force),
-        Column("less multiplier", "difference", percent),
-        Column("FEA", "fea", force),
-        Column("multiplier less FEA", "from_fea", percent),
-        Column("no value because", lambda at: ": ".join((at.absence.value, *filter(None, [", ".join(at.changes)])))
-               if at.absence else ""),
-    ]  # fmt: skip
     rows = [each for each in found if each.station in stations[each.stage]]
-    return table_of(f"Reaction at the drive {drive}, {unit}", columns, rows, summary(scene, found) + ended)
+    return table_of(
+        f"Reaction at the drive {drive}, {unit}",
+        columns=[
+            Column[WorkEnergyReaction]("station", lambda at: at_station(scene, at.stage, at.station)),
+            Column("multiplier", "multiplier", force),
+            Column("work–energy", "work_energy", force),
+            Column("less multiplier", "difference", percent),
+            Column("FEA", "fea", force),
+            Column("multiplier less FEA", "from_fea", percent),
+            Column(
+                "no value because",
+                lambda at: ": ".join((at.absence.value, *filter(None, [", ".join(at.changes)]))) if at.absence else "",
+            ),
+        ],
+        items=rows,
+        note=summary(scene, found) + ended,
+    )
 
 
 def summary(scene: Scene, found: Sequence[WorkEnergyReaction]) -> str:
@@ -330,9 +336,13 @@ def _seconds_table(compared: Comparison) -> Table:
     }
     answers = [(label, runs.answers[name]) for name, label in labels.items() if name in runs.answers]
     answers += [(f"solid, {one.settings['elements']} along", one) for one in runs.solids]
-    columns = [
-        Column[tuple[str, Answer]]("answer", lambda at: at[0]),
-        Column("stations", lambda at: len(at[1].stations)),
-        Column("seconds", lambda at: at[1].seconds, number),
-    ]
-    return table_of("Seconds", columns, answers, "From the scene to certified answers, by each solver's own clock.")
+    return table_of(
+        "Seconds",
+        columns=[
+            Column[tuple[str, Answer]]("answer", lambda at: at[0]),
+            Column("stations", lambda at: len(at[1].stations)),
+            Column("seconds", lambda at: at[1].seconds, number),
+        ],
+        items=answers,
+        note="From the scene to certified answers, by each solver's own clock.",
+    )

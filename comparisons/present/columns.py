@@ -82,8 +82,14 @@ class Table:
 
 def table_of(title: str, columns: Sequence[Column[T]], items: Iterable[T], note: str = "") -> Table:
     """Table with a row for every item, without columns that have no value in any row."""
-    rows = tuple(tuple(column.cell(item) for column in columns) for item in items)
-    return without_empty(Table(title, tuple(column.header for column in columns), rows, note))
+    return without_empty(
+        Table(
+            title,
+            tuple(column.header for column in columns),
+            rows=tuple(tuple(column.cell(item) for column in columns) for item in items),
+            note=note,
+        )
+    )
 
 
 def without_empty(table: Table) -> Table:

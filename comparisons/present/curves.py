@@ -107,9 +107,14 @@ def _curve(
     titles = ", ".join(title for title, *_ in ordinates)
     jumps = " Dashed: jumps between the stations beside a critical point." if any(at.branch for at in mine) else ""
     dotted = " Dotted: critical values of either solver, the CPRBM's with names." if marks else ""
-    caption = f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage.{jumps}{dotted}"
     panels[0] = panels[0]._replace(texts=above)
-    return chart(f"path-{steps}", caption, f"{steps}, {step_unit}", panels, marks=marks)
+    return chart(
+        f"path-{steps}",
+        caption=f"{titles[:1].upper()}{titles[1:]} against {steps}; triangles point along the stage.{jumps}{dotted}",
+        abscissa=f"{steps}, {step_unit}",
+        panels=panels,
+        marks=marks,
+    )
 
 
 def _paths(
@@ -156,24 +161,27 @@ def reaction_figures(compared: Comparison) -> Iterator[Figure]:
             "work_energy": {**CPRBM, "marker": "o", "markerfacecolor": "none", "label": "CPRBM, work–energy"},
         }
         band = 100.0 * MESH_ALLOWANCE
-        panels = [
-            Panel(
-                f"reaction {'moment' if si == 'rad' else 'force'}, {unit_name}",
-                _reaction_lines(found, step, factor, forces),
+        yield chart(
+            f"reaction-{drive}",
+            caption=(
+                f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier. The band of "
+                f"{band:g} % to either side is the allowance for the motion of the mesh where contacts are closed. "
+                "Stations beside an event have no work–energy reaction."
             ),
-            Panel(
-                "relative difference, %",
-                _reaction_lines(found, step, -0.01, {"from_fea": crosses})
-                + _reaction_lines(found, step, 0.01, {"difference": {**CPRBM, "label": "work–energy"}}),
-                band=band,
-            ),
-        ]
-        caption = (
-            f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier. The band of "
-            f"{band:g} % to either side is the allowance for the motion of the mesh where contacts are closed. "
-            "Stations beside an event have no work–energy reaction."
+            abscissa=f"{drive}, {step_unit}",
+            panels=[
+                Panel(
+                    f"reaction {'moment' if si == 'rad' else 'force'}, {unit_name}",
+                    _reaction_lines(found, step, factor, forces),
+                ),
+                Panel(
+                    "relative difference, %",
+                    _reaction_lines(found, step, -0.01, {"from_fea": crosses})
+                    + _reaction_lines(found, step, 0.01, {"difference": {**CPRBM, "label": "work–energy"}}),
+                    band=band,
+                ),
+            ],
         )
-        yield chart(f"reaction-{drive}", caption, f"{drive}, {step_unit}", panels)
 
 
 def _reaction_lines(
@@ -200,15 +208,20 @@ def _along_beams(
     title, si = quantity
     factor, unit_name = display_unit(scene, si, max(np.max(np.abs(y)) for panel in lines.values() for _, y, _ in panel))
     metre, length_unit = display_unit(scene, "m", longest(scene))
-    panels = [
-        Panel(
-            f"{title}, {unit_name}",
-            [(np.asarray(s) / metre, np.asarray(y) / factor, look) for s, y, look in panel],
-            beam,
-        )
-        for beam, panel in lines.items()
-    ]
-    return chart(name, caption, f"initial arc length, {length_unit}", panels, shared="")
+    return chart(
+        name,
+        caption,
+        f"initial arc length, {length_unit}",
+        panels=[
+            Panel(
+                f"{title}, {unit_name}",
+                [(np.asarray(s) / metre, np.asarray(y) / factor, look) for s, y, look in panel],
+                beam,
+            )
+            for beam, panel in lines.items()
+        ],
+        shared="",
+    )
 
 
 def stress_figures(scene: Scene, fea: StationAnswer, cprbm: StationAnswer) -> Iterator[Figure]:
@@ -221,11 +234,16 @@ def stress_figures(scene: Scene, fea: StationAnswer, cprbm: StationAnswer) -> It
         if probe.quantity == "bending_stress" and fea.values[probe.name].size == cprbm.values[probe.name].size > 0
     }
     if lines:
-        caption = (
-            f"Bending stress along the beams at {at_station(scene, fea.stage, fea.value)}, positive where the load "
-            "turns the tangent counter-clockwise along the beam."
+        yield _along_beams(
+            scene,
+            "stress",
+            caption=(
+                f"Bending stress along the beams at {at_station(scene, fea.stage, fea.value)}, positive where the load "
+                "turns the tangent counter-clockwise along the beam."
+            ),
+            quantity=("bending stress", "Pa"),
+            lines=lines,
         )
-        yield _along_beams(scene, "stress", caption, ("bending stress", "Pa"), lines)
 
 
 def contact_figures(compared: Comparison) -> Iterator[Figure]:
@@ -246,8 +264,13 @@ def contact_figures(compared: Comparison) -> Iterator[Figure]:
                 (np.append(s[:1], s), np.cumsum([0.0, *sizes]), step)
             )
     if lines:
-        caption = (
-            f"Contact forces along the beams at {at_station(scene, *last)}, summed up from the start of the beam. A "
-            "step is a force at a point, a slope is a zone; where the sum is constant, nothing presses."
+        yield _along_beams(
+            scene,
+            "contact-forces",
+            caption=(
+                f"Contact forces along the beams at {at_station(scene, *last)}, summed up from the start of the beam. "
+                "A step is a force at a point, a slope is a zone; where the sum is constant, nothing presses."
+            ),
+            quantity=("sum of forces", "N"),
+            lines=dict(sorted(lines.items())),
         )
-        yield _along_beams(scene, "contact-forces", caption, ("sum of forces", "N"), dict(sorted(lines.items())))

@@ -92,8 +92,12 @@ def designs_figure(designs: Sequence[Comparison]) -> Figure:
             for place, strip in enumerate(view.strips.values()):
                 axes.plot(*strip.line.T, "-", color=colour, linewidth=2.0, label=None if place else label)
         _set_window(axes, designs[0].scene, low, high)
-        caption = "Neutral lines of several designs, each at its last station."
-        return finished(drawing, "designs", caption, ("lower center", 2))
+        return finished(
+            drawing,
+            "designs",
+            caption="Neutral lines of several designs, each at its last station.",
+            legend=("lower center", 2),
+        )
 
 
 def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple[str, float]]) -> Figure:
@@ -118,8 +122,12 @@ def shapes(scene: Scene, answers: Mapping[str, Answer], stations: Sequence[tuple
             _set_window(axes, scene, low, high, f"{stage}: {steps[stage]} = {load_text(scene, stage, value)}")
         where = f"at {at_station(scene, *stations[0])}" if alone else "at several stations"
         apart = " Dotted: the way of an end that is drawn apart from its pin." if scene.assembly is not None else ""
-        caption = f"Neutral lines at rest and {where}, with the places of contact.{apart}"
-        return finished(drawing, "shapes" if alone else "stations", caption, ("lower center", 2))
+        return finished(
+            drawing,
+            "shapes" if alone else "stations",
+            caption=f"Neutral lines at rest and {where}, with the places of contact.{apart}",
+            legend=("lower center", 2),
+        )
 
 
 def _draw_mechanism(axes: Axes, scene: Scene, view: View, stations: Mapping[str, StationAnswer]) -> None:

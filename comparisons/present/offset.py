@@ -212,11 +212,20 @@ def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
 def offset_sections(compared: OffsetComparison, figures: Sequence[Figure] = ()) -> tuple[Section, ...]:
     """Errors with the figures, and claims; run times stand last."""
     seconds = [Column[tuple[str, float]]("answer", lambda at: at[0]), Column("seconds", lambda at: at[1], number)]
-    note = "From the question to all points, by this machine's clock."
     return (
         Section("Errors against the exact offset curve", (), tuple(figures), (error_table(compared),)),
         Section("What the source claims", tables=(_claims_table(compared),)),
-        Section("Run time", tables=(table_of("Seconds", seconds, compared.seconds.items(), note),)),
+        Section(
+            "Run time",
+            tables=(
+                table_of(
+                    "Seconds",
+                    seconds,
+                    compared.seconds.items(),
+                    note="From the question to all points, by this machine's clock.",
+                ),
+            ),
+        ),
     )
 
 
@@ -260,21 +269,20 @@ def _claims_table(compared: OffsetComparison) -> Table:
         }
         for claim, spacing, rows in groups
     ]
-    columns = [
-        Column[Plain]("claim", "claim", lambda claim: claim.text or f"from N = {claim.numbers_from} on"),
-        Column("spacing", "spacing"),
-        Column("source", "claim.bound", percent),
-        Column("largest here", "worst.difference", percent),
-        Column("at", "worst", lambda row: f"N, t = {row.n}, {row.offset:g}"),
-        Column("over t", "over", percent),
-        Column("", lambda at: "not met" if at["missed"] else "met"),
-        Column("not met at N", "missed"),
-    ]
     return table_of(
         "Claims of the source",
-        columns,
-        standings,
-        "Claims take no part in the verdict. N counts springs, and offset points; 'over t' is the largest error "
+        columns=[
+            Column[Plain]("claim", "claim", lambda claim: claim.text or f"from N = {claim.numbers_from} on"),
+            Column("spacing", "spacing"),
+            Column("source", "claim.bound", percent),
+            Column("largest here", "worst.difference", percent),
+            Column("at", "worst", lambda row: f"N, t = {row.n}, {row.offset:g}"),
+            Column("over t", "over", percent),
+            Column("", lambda at: "not met" if at["missed"] else "met"),
+            Column("not met at N", "missed"),
+        ],
+        items=standings,
+        note="Claims take no part in the verdict. N counts springs, and offset points; 'over t' is the largest error "
         "relative to the offset.",
     )
 
@@ -330,5 +338,9 @@ def _points(compared: OffsetComparison, shown: Shown) -> Figure:
             axes.margins(0.08)
             axes.set(title=f"N = {n}", ylabel="y, m", aspect="equal")
         plots[-1].set_xlabel("x, m")
-        caption = f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}."
-        return finished(drawing, "points", caption, ("lower center", 3))
+        return finished(
+            drawing,
+            "points",
+            caption=f"Offset points on the exact offset curves, spacing {next(iter(question.spacings))}.",
+            legend=("lower center", 3),
+        )

@@ -71,21 +71,19 @@ class Page:
     @property
     def firsts(self) -> tuple[Table, ...]:
         """The tables with a row for every verdict, and for every claim of a source; none without rows."""
-        verdicts = tuple((each.name, each.word, *each.glance) for each in self.chapters if each.word)
-        claims = tuple((each.name, *row) for each in self.chapters for row in each.claims)
         glance = Table(
             "Verdicts at a glance",
-            ("case", "verdict", "largest difference", "of", "claims met", "because"),
-            verdicts,
-            "Largest difference: over all compared rows, as a share of the probe's scale. The JSON files beside this "
-            "page have every number below.",
+            headers=("case", "verdict", "largest difference", "of", "claims met", "because"),
+            rows=tuple((each.name, each.word, *each.glance) for each in self.chapters if each.word),
+            note="Largest difference: over all compared rows, as a share of the probe's scale. The JSON files beside "
+            "this page have every number below.",
             linked=True,
         )
         sources = Table(
             "The sources’ figures and ours",
-            ("case", "claim", "source", "largest here", "at", "stands"),
-            claims,
-            "Claims take no part in the verdicts. Each case says what its differences are made of.",
+            headers=("case", "claim", "source", "largest here", "at", "stands"),
+            rows=tuple((each.name, *row) for each in self.chapters for row in each.claims),
+            note="Claims take no part in the verdicts. Each case says what its differences are made of.",
             linked=True,
         )
         return tuple(table for table in (glance, sources) if table.rows)
@@ -236,14 +234,15 @@ def own_folder(folder: Path, name: str) -> Path:
     return own
 
 
-def put_case(folder: Path, compared: Compared, figures: Sequence[Figure], further: Sequence[Section] = ()) -> Chapter:
+def put_case(folder: Path, compared: Compared, further: Sequence[Section] = ()) -> Chapter:
     """The chapter of a case, with numbers, answers, figures and further sections written into a folder of a report.
 
     Raises:
         OSError: the folder cannot be written to.
     """
-    own, name = own_folder(folder, compared.question.name), "comparison"
-    for section in (Section("", (), tuple(figures), (), name, {"cases": [document_of(compared)]}), *further):
+    own, figures = own_folder(folder, compared.question.name), figures_of(compared)
+    numbers = Section("", figures=figures, name="comparison", data={"cases": [document_of(compared)]})
+    for section in (numbers, *further):
         put_section(own, section)
     if isinstance(compared, Comparison):
         write(own / "answers.json.gz", packed(compared.runs.answers))

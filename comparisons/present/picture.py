@@ -151,15 +151,19 @@ def view_of(scene: Scene, station: StationAnswer) -> View:
     """The drawable parts of a station."""
     strips = {name: strip_of(name, beam, station) for name, beam in scene.beams.items()}
     points = _points(scene, station)
-    arrows = (*_pushes(scene, station, strips), *_loads(scene, station, strips))
     beams = (
         Part(kind, name, strip.outline(rest=kind == "rest"), closed=True)
         for name, strip in strips.items()
         for kind in ("rest", "beam")
     )
     touched = (Part("contact", name, places) for name, places in station.touching.items())
-    parts = (*_edges(scene, station), *beams, *_bodies(scene, points), *_stops(scene, station, points), *touched)
-    return View(station, points, strips, arrows, parts)
+    return View(
+        station,
+        points,
+        strips,
+        arrows=(*_pushes(scene, station, strips), *_loads(scene, station, strips)),
+        parts=(*_edges(scene, station), *beams, *_bodies(scene, points), *_stops(scene, station, points), *touched),
+    )
 
 
 def bounds_of(scene: Scene, views: Sequence[View], quantity: Coloured) -> Bounds:
@@ -169,13 +173,17 @@ def bounds_of(scene: Scene, views: Sequence[View], quantity: Coloured) -> Bounds
         part.points for view in views for part in view.parts
         if part.kind not in ("edge", "stop") or (part.closed and np.ptp(part.points, axis=0).max() <= room)
     ])  # fmt: skip
-    force = {
-        kind: max((arrow.size for view in views for arrow in view.arrows_of(kind)), default=0.0)
-        for kind in ("push", "load")
-    }
     largest = max(float(np.abs(getattr(strip, quantity)).max()) for view in views for strip in view.strips.values())
-    least = 0.0 if quantity == "combined_stress" else -largest
-    return Bounds(corners.min(axis=0), corners.max(axis=0), least, largest, force)
+    return Bounds(
+        low=corners.min(axis=0),
+        high=corners.max(axis=0),
+        least=0.0 if quantity == "combined_stress" else -largest,
+        most=largest,
+        force={
+            kind: max((arrow.size for view in views for arrow in view.arrows_of(kind)), default=0.0)
+            for kind in ("push", "load")
+        },
+    )
 
 
 def carried(scene: Scene, station: StationAnswer, body: str, places: Array) -> Array:

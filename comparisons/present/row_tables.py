@@ -94,8 +94,11 @@ def value_columns(scene: Scene, rows: Sequence[Row], paths: Mapping[str, str]) -
 
 def value_table(compared: Comparison, rows: Sequence[Row]) -> Table:
     """Values of one station."""
-    columns = [*value_columns(compared.scene, rows, _VALUES), *columns_of(share, ERROR), _WORD]
-    return table_of(f"Values at {at_station(compared.scene, *rows[0].where)}", columns, rows)
+    return table_of(
+        f"Values at {at_station(compared.scene, *rows[0].where)}",
+        columns=[*value_columns(compared.scene, rows, _VALUES), *columns_of(share, ERROR), _WORD],
+        items=rows,
+    )
 
 
 def error_tables(compared: Comparison, last: Sequence[Row]) -> tuple[Table, ...]:
@@ -140,11 +143,15 @@ def verdict_table(rows: Sequence[Row]) -> Table:
         "round-off": "bounds.round_off",
         "theory": "theory",
     }
-    note = (
-        "The difference must stay within the stated uncertainty, which follows from further discretisations of each "
-        "solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
+    return table_of(
+        "Differences and stated uncertainties",
+        [_PROBE, *columns_of(share, paths), _WORD],
+        rows,
+        note=(
+            "The difference must stay within the stated uncertainty, which follows from further discretisations of "
+            "each solver. Theory: the step of the CPRBM to the other theory. Fractions as in the tables of errors."
+        ),
     )
-    return table_of("Differences and stated uncertainties", [_PROBE, *columns_of(share, paths), _WORD], rows, note)
 
 
 def theory_table(compared: Comparison, rows: Sequence[Row]) -> Table:
@@ -155,9 +162,12 @@ def theory_table(compared: Comparison, rows: Sequence[Row]) -> Table:
         f"CPRBM in {runs.theory}": "cprbm",
         f"FEA in {runs.theory}": "fea",
     }
-    columns = [*value_columns(compared.scene, rows, paths), *columns_of(share, {"theory": "theory"})]
-    note = "Theory: distance of the CPRBM's values in both theories, in the formulation auto."
-    return table_of("Both theories", columns, [row for row in rows if row.other is not None], note)
+    return table_of(
+        "Both theories",
+        columns=[*value_columns(compared.scene, rows, paths), *columns_of(share, {"theory": "theory"})],
+        items=[row for row in rows if row.other is not None],
+        note="Theory: distance of the CPRBM's values in both theories, in the formulation auto.",
+    )
 
 
 def exact_table(compared: Comparison, rows: Sequence[Row]) -> Table:

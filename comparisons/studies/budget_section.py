@@ -96,29 +96,29 @@ def budget_table(account: Account) -> Table:
 
     uncertainty = Column[Budget]("±", lambda at: _cell(at, at.rest_uncertainty if at.all_parts else None))
     parts = {name: [part(name), *[uncertainty] * (name == "rest")] for name in PARTS}
-    columns = [
-        Column[Budget]("probe", "row.probe.name"),
-        Column("difference", lambda at: _cell(at, at.row.difference)),
-        *chain.from_iterable(parts[name] for name in PARTS if any(at.parts[name] for at in account.last)),
-        Column("paper", lambda at: _cell(at, None if at.parts["contact"] else at.paper, sign=True)),
-        Column("curved", lambda at: _cell(at, at.curved or None)),
-        Column("missed", lambda at: _cell(at, at.missed, sign=True)),
-        Column("±", lambda at: _cell(at, at.missed_uncertainty)),
-    ]
-    note = (
-        "Per cent of the denominator of the case's table. The parts sum to the difference; negative parts make the "
-        "difference smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits "
-        f"in {account.choices.theory}, with the uncertainty. Beside the sum: paper, "
-        "from auto to paper at the same links; curved, error of the straight-beam formula of stress, t/(3R) to first "
-        "order; missed, limit of the finite elements less the solid's limit, with the uncertainty."
-    )
     links, elements = (
         str(count) if isinstance(count, int) else ",".join(f"{beam}={n}" for beam, n in count.items())
         for count in (account.choices.links, account.choices.elements)
     )
     sizes = f"{links} links and {elements} elements per beam"
-    title = f"Error budget at {at_station(account.scene, *last_station(account.scene))} with {sizes}, %"
-    return table_of(title, columns, account.last, note)
+    return table_of(
+        title=f"Error budget at {at_station(account.scene, *last_station(account.scene))} with {sizes}, %",
+        columns=[
+            Column[Budget]("probe", "row.probe.name"),
+            Column("difference", lambda at: _cell(at, at.row.difference)),
+            *chain.from_iterable(parts[name] for name in PARTS if any(at.parts[name] for at in account.last)),
+            Column("paper", lambda at: _cell(at, None if at.parts["contact"] else at.paper, sign=True)),
+            Column("curved", lambda at: _cell(at, at.curved or None)),
+            Column("missed", lambda at: _cell(at, at.missed, sign=True)),
+            Column("±", lambda at: _cell(at, at.missed_uncertainty)),
+        ],
+        items=account.last,
+        note="Per cent of the denominator of the case's table. The parts sum to the difference; negative parts make "
+        "the difference smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits "
+        f"in {account.choices.theory}, with the uncertainty. Beside the sum: paper, "
+        "from auto to paper at the same links; curved, error of the straight-beam formula of stress, t/(3R) to first "
+        "order; missed, limit of the finite elements less the solid's limit, with the uncertainty.",
+    )
 
 
 def budget_figures(account: Account) -> tuple[Figure, ...]:

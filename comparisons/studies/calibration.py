@@ -159,32 +159,30 @@ def _sentences(found: Calibration) -> Iterable[str]:
 
 def _tallies(found: Calibration) -> Table:
     """Error ratios by case, solver and size, and of all sizes together."""
-    items = [
-        (case, size, own)
-        for case, trials in found.by_case().items()
-        for place, solver in enumerate(SOLVERS)
-        for size, own in [
-            *((str(trial.sizes[solver]), tallies([trial])[place]) for trial in trials),
-            ("all", tallies(trials)[place]),
-        ]
-    ]
-    columns = [
-        Column[tuple[str, str, Tally]]("case", lambda at: at[0]),
-        Column("solver", lambda at: _NAMES[at[2].solver]),
-        Column("N", lambda at: at[1]),
-        Column("rows", lambda at: at[2].rows),
-        Column("within", lambda at: at[2].within),
-        Column("share", lambda at: at[2].share, percent),
-        Column("stated over true", lambda at: at[2].over, number),
-        Column("largest true over stated", lambda at: at[2].worst[0].ratio if at[2].worst else None, number),
-        Column("rule", lambda at: "met" if at[2].holds else "not met"),
-    ]
     return table_of(
         "Calibration",
-        columns,
-        items,
-        "Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is the "
-        "number of links or elements per beam. Stated over true: the median.",
+        columns=[
+            Column[tuple[str, str, Tally]]("case", lambda at: at[0]),
+            Column("solver", lambda at: _NAMES[at[2].solver]),
+            Column("N", lambda at: at[1]),
+            Column("rows", lambda at: at[2].rows),
+            Column("within", lambda at: at[2].within),
+            Column("share", lambda at: at[2].share, percent),
+            Column("stated over true", lambda at: at[2].over, number),
+            Column("largest true over stated", lambda at: at[2].worst[0].ratio if at[2].worst else None, number),
+            Column("rule", lambda at: "met" if at[2].holds else "not met"),
+        ],
+        items=[
+            (case, size, own)
+            for case, trials in found.by_case().items()
+            for place, solver in enumerate(SOLVERS)
+            for size, own in [
+                *((str(trial.sizes[solver]), tallies([trial])[place]) for trial in trials),
+                ("all", tallies(trials)[place]),
+            ]
+        ],
+        note="Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is "
+        "the number of links or elements per beam. Stated over true: the median.",
     )
 
 
@@ -197,18 +195,22 @@ def _worst(found: Calibration) -> Table:
         for own in tallies(trials)
         for each in own.worst
     ]  # fmt: skip
-    columns = [
-        Column[tuple[str, ErrorRatio]]("case", lambda at: at[0]),
-        Column("solver", lambda at: _NAMES[at[1].solver]),
-        Column("N", lambda at: sizes[id(at[1])]),
-        Column("probe", lambda at: at[1].row.probe.name),
-        Column("at", lambda at: f"{at[1].row.stage} {at[1].row.station:g}"),
-        Column("true", lambda at: _shares(at[1])[0], percent),
-        Column("stated", lambda at: _shares(at[1])[1], percent),
-        Column("true over stated", lambda at: at[1].ratio, number),
-        Column("", lambda at: at[1].word),
-    ]
-    return table_of("The least well stated", columns, worst, "True and stated as fractions of the probe's scale.")
+    return table_of(
+        "The least well stated",
+        columns=[
+            Column[tuple[str, ErrorRatio]]("case", lambda at: at[0]),
+            Column("solver", lambda at: _NAMES[at[1].solver]),
+            Column("N", lambda at: sizes[id(at[1])]),
+            Column("probe", lambda at: at[1].row.probe.name),
+            Column("at", lambda at: f"{at[1].row.stage} {at[1].row.station:g}"),
+            Column("true", lambda at: _shares(at[1])[0], percent),
+            Column("stated", lambda at: _shares(at[1])[1], percent),
+            Column("true over stated", lambda at: at[1].ratio, number),
+            Column("", lambda at: at[1].word),
+        ],
+        items=worst,
+        note="True and stated as fractions of the probe's scale.",
+    )
 
 
 def pictures(found: Calibration) -> tuple[Figure, ...]:
@@ -226,14 +228,20 @@ def pictures(found: Calibration) -> tuple[Figure, ...]:
         lines.append((ends, ends, {"color": "black", "linewidth": 1.0}))
         lines.append((ends, LARGEST_MEDIAN * ends, {"linestyle": "--", "color": GREY, "linewidth": 1.0}))
         panels.append(Panel("" if panels else "stated error / scale", lines, _NAMES[solver]))
-    caption = (
-        "Each row's stated error against its true one. On the line they are equal; below it the statement is not "
-        "true. Dashed: stated ten times the true one, which the median is not to exceed."
-    )
     return (
-        chart("calibration", caption, "true error / scale", panels, panel=(4.8, 4.4), columns=2, shared="xy",
-              decades=(), legend=("lower center", 4)),
-    )  # fmt: skip
+        chart(
+            "calibration",
+            caption="Each row's stated error against its true one. On the line they are equal; below it the statement "
+            "is not true. Dashed: stated ten times the true one, which the median is not to exceed.",
+            abscissa="true error / scale",
+            panels=panels,
+            panel=(4.8, 4.4),
+            columns=2,
+            shared="xy",
+            decades=(),
+            legend=("lower center", 4),
+        ),
+    )
 
 
 def _shares(ratio: ErrorRatio) -> tuple[float, float]:

@@ -61,8 +61,14 @@ def convergence_of(scene: Scene, sizes: Sequence[int], choices: Choices, solvers
         own = dict(zip(sizes, answers[place * len(sizes) :], strict=False))
         why = {n: said for n, answer in own.items() if (said := "; ".join(problem_sentences(scene, answer)))}
         series.append(Series(method, variant, theory, own, why))
-    families, criticals = probe_families(scene, series, exact), critical_families(scene, series)
-    return Convergence(scene, tuple(sizes), tuple(series), tuple(families), tuple(criticals), exact)
+    return Convergence(
+        scene,
+        sizes=tuple(sizes),
+        series=tuple(series),
+        families=tuple(probe_families(scene, series, exact)),
+        criticals=tuple(critical_families(scene, series)),
+        exact=exact,
+    )
 
 
 def convergence_section(
@@ -110,9 +116,13 @@ def convergence_figures(found: Convergence) -> tuple[Figure, ...]:
         high = low * (right / left) ** series.order  # a triangle shows the slope of the order, below all errors
         lines.append(([left, right, left, left], [high, low, low, high], {"color": GREY, "linewidth": 1.0}))
         look = {"xytext": (4, -4), "color": GREY, "fontsize": 9.0}
-        texts = [(f"{series.order:g}", (left, (low * high) ** 0.5), look)]
-        ordinate = "" if panels else "distance from the limit / the probe's largest value"
-        panels.append(Panel(ordinate, lines, convergence_tables.NAMES[series.method], texts=texts))
+        panel = Panel(
+            ordinate="" if panels else "distance from the limit / the probe's largest value",
+            lines=lines,
+            title=convergence_tables.NAMES[series.method],
+            texts=[(f"{series.order:g}", (left, (low * high) ** 0.5), look)],
+        )
+        panels.append(panel)
     caption = (
         f"Distance from the limit at {at_station(found.scene, *last_station(found.scene))}; above it the "
         "limit's uncertainty, hollow where the uncertainty is larger."
@@ -230,6 +240,11 @@ def _offset_figure(question: OffsetQuestion, numbers: tuple[int, ...], families:
          {"linestyle": line, "marker": marker, "color": f"C{place % 10}", "markersize": 4.5, "label": spacing})
         for spacing, (place, line, marker) in looks.items()
     ]  # fmt: skip
-    panels = [Panel(f"largest error / {question.relative_to}", lines)]
-    caption = "Largest error of all offsets against the number of springs."
-    return chart("convergence", caption, "springs N", panels, panel=(6.4, 3.4), decades=numbers)
+    return chart(
+        "convergence",
+        caption="Largest error of all offsets against the number of springs.",
+        abscissa="springs N",
+        panels=[Panel(f"largest error / {question.relative_to}", lines)],
+        panel=(6.4, 3.4),
+        decades=numbers,
+    )

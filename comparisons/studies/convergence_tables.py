@@ -119,17 +119,20 @@ def _criticals(found: Convergence) -> Table:
             str(n), lambda at: with_unit(scene, at.critical[n].value, at.unit, 6) if n in at.critical else None
         )
 
-    columns = [
-        Column[Family]("stage", lambda at: f"{at.stage}, {at.place + 1}" if at.place else at.stage),
-        Column("solver", lambda at: variants[at.solver]),
-        Column("mechanism", _mechanism),
-        *map(value, found.sizes),
-        Column("order", "found.order", number),
-        Column("limit", lambda at: at.found and with_unit(scene, float(at.found.value[0]), at.unit, 5)),
-        Column("±", lambda at: at.found and distance_text(scene, float(at.found.uncertainty[0]), at.unit)),
-    ]
-    note = "Of the load or drive that the stage steps. The order is observed at the three finest sizes that count."
-    return table_of(f"{scene.title or scene.name}: critical values against N", columns, found.criticals, note)
+    return table_of(
+        f"{scene.title or scene.name}: critical values against N",
+        columns=[
+            Column[Family]("stage", lambda at: f"{at.stage}, {at.place + 1}" if at.place else at.stage),
+            Column("solver", lambda at: variants[at.solver]),
+            Column("mechanism", _mechanism),
+            *map(value, found.sizes),
+            Column("order", "found.order", number),
+            Column("limit", lambda at: at.found and with_unit(scene, float(at.found.value[0]), at.unit, 5)),
+            Column("±", lambda at: at.found and distance_text(scene, float(at.found.uncertainty[0]), at.unit)),
+        ],
+        items=found.criticals,
+        note="Of the load or drive that the stage steps. The order is observed at the three finest sizes that count.",
+    )
 
 
 def _mechanism(family: Family) -> str:
@@ -173,8 +176,12 @@ def _limits(found: Convergence) -> Table:
         "largest value in the stage. Stresses at one place."
     )
     note += f" No exact values: {found.exact.sentence}" if found.exact and not found.exact.stations else ""
-    title = f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}"
-    return table_of(title, columns, pairs_of(found.last), note)
+    return table_of(
+        title=f"{scene.title or scene.name}: limits at {at_station(scene, *last_station(scene))}",
+        columns=columns,
+        items=pairs_of(found.last),
+        note=note,
+    )
 
 
 def _share(family: Family, value: float | None) -> str:
@@ -209,11 +216,15 @@ def _orders(found: Convergence) -> Table:
         Column("at", worst, lambda each: at_station(found.scene, each[0].cprbm.stage, each[0].cprbm.station or 0.0)),
         Column("within", lambda mine: f"{sum(apart <= stated for _, apart, stated in mine)} of {len(mine)}"),
     ]  # fmt: skip
-    note = (
-        "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
-        "a change that is round-off or turns back has no order. Distances at their worst."
+    return table_of(
+        "Orders and limits over all stations",
+        columns,
+        [mine for mine in groups if mine],
+        note=(
+            "Orders observed at every three consecutive sizes, by the norm of the changes: median, least and largest; "
+            "a change that is round-off or turns back has no order. Distances at their worst."
+        ),
     )
-    return table_of("Orders and limits over all stations", columns, [mine for mine in groups if mine], note)
 
 
 def spread(orders: Iterable[float | None]) -> str:

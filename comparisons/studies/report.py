@@ -6,9 +6,10 @@ added without solving the others again.
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -25,7 +26,6 @@ from comparisons.present.columns import Plain, Section
 from comparisons.present.offset import Compared
 from comparisons.present.page import (
     Chapter,
-    figures_of,
     light,
     put_case,
     put_page,
@@ -48,9 +48,6 @@ AT_MOST = 4.0
 """Seconds after which a size is not repeated and no larger size begins."""
 
 _CHAPTER, _TABLE = "chapter.json", "table1-section.json"
-
-Content = tuple[Compared, tuple[Section, ...]]
-"""The comparison of a question, and further sections: error against N, and run times."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,25 +108,18 @@ class Report:
         names = {cell.case for cell in table1.CELLS}
         return self.times and all(cases.asked(name) in self.questions for name in names)
 
-    def content_of(self, question: Question, pending: Callable[[], Compared], run: Run) -> Content:
-        """All numbers of a question; run times come last, when no other solve runs.
+    def further_sections(self, question: Question, run: Run) -> Iterator[Section]:
+        """Error against N and run times of a question, or the refusals of a solver; run times come last.
 
         Args:
             question: a scene or an offset question.
-            pending: the comparison, whose runs may have begun.
             run: solvers with kept answers, and processes to share the runs.
-
-        Raises:
-            SceneError: a solver refuses the comparison; the report names other refusals.
         """
-        further = dict[str, Callable[[], Section]]()
         if self.sizes:
-            further["Error against N"] = lambda: convergence_section(
-                question, self.sizes, self.choices, run.solvers, run.crew
-            )
+            convergence = partial(convergence_section, question, self.sizes, self.choices, run.solvers, run.crew)
+            yield _or_refusal("Error against N", convergence)
         if self.times and isinstance(question, Scene):
-            further["Run times"] = lambda: _run_times(question, self.timed, run.solvers)
-        return pending(), tuple(_or_refusal(heading, section) for heading, section in further.items())
+            yield _or_refusal("Run times", partial(_run_times, question, self.timed, run.solvers))
 
     def add(self, question: Question, compared: Compared, further: tuple[Section, ...]) -> None:
         """Write the chapter of a question, and the page with the chapter.
@@ -137,7 +127,7 @@ class Report:
         Raises:
             OSError: the folder cannot be written to.
         """
-        own, chapter = self.folder / question.name, put_case(self.folder, compared, figures_of(compared), further)
+        own, chapter = self.folder / question.name, put_case(self.folder, compared, further)
         chapter = replace(chapter, files=("scene.toml", *chapter.files))
         write(own / "scene.toml", chapter.scene)
         # the last of all files: with it all are there
@@ -202,9 +192,15 @@ def _run_times(scene: Scene, timed: Solvers, knowing: Solvers) -> Section:
         SceneError: every method refuses the question.
     """
     scene = benchmark_scene(scene)
-    sizes = dict.fromkeys(contenders(timed, Choices(kinematics="bending")), SIZES)
-    known = reference(scene, knowing)
-    session = Session(scene, provenance.machine(), sizes, known, repeat=REPEAT, at_most=AT_MOST, clock="cpu")
+    session = Session(
+        scene,
+        provenance.machine(),
+        sizes=dict.fromkeys(contenders(timed, Choices(kinematics="bending")), SIZES),
+        reference=reference(scene, knowing),
+        repeat=REPEAT,
+        at_most=AT_MOST,
+        clock="cpu",
+    )
     measured = session.after_all()
     return replace(bench_section(measured), figures=pictures(measured))
 

@@ -117,8 +117,13 @@ def problem_of(scene: Scene, axes: Sequence[Axis], file: Path) -> Problem:
     varied = in_file_units(scene, axes or ranges_of(scene))
     if not varied:
         raise SceneError([Mistake("--vary", "no range", "NAME=FIRST..LAST, or a parameter with a range")])
-    measure = measure_of(scene, demands.goal, "goal", str(file))
-    return Problem(scene, varied, demands.goal, measure, bounds_of(scene, demands, str(file)))
+    return Problem(
+        scene,
+        axes=varied,
+        goal=demands.goal,
+        measure=measure_of(scene, demands.goal, "goal", str(file)),
+        bounds=bounds_of(scene, demands, str(file)),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,8 +203,12 @@ def optimum(problem: Problem, runner: Runner, starts: int, most: int) -> Optimum
     found.sort(key=lambda each: (not each.feasible, problem.cost(each.number) if each.feasible else 0.0))
     best = found[0].point
     doubled = replace(runner, choices=runner.choices.finer())
-    checks = problem.outcome(doubled, best), problem.outcome(runner, best, "compare")
-    return Optimum(problem, tuple(found), *checks)
+    return Optimum(
+        problem,
+        ends=tuple(found),
+        finer=problem.outcome(doubled, best),
+        compared=problem.outcome(runner, best, "compare"),
+    )
 
 
 def _end(problem: Problem, runner: Runner, scale: float, most: int, begun: Array) -> End:
@@ -228,9 +237,15 @@ def _end(problem: Problem, runner: Runner, scale: float, most: int, begun: Array
     )
     point = problem.point(found.x)
     outcome = problem.outcome(runner, point)
-    feasible = outcome.completed and all(bound.excess(outcome) <= FEASIBLE for bound in problem.bounds)
-    number, settled = problem.number(outcome), bool(found.status == 0)
-    return End(problem.point(begun), point, outcome, number, feasible, len(seen), settled)
+    return End(
+        begun=problem.point(begun),
+        point=point,
+        outcome=outcome,
+        number=problem.number(outcome),
+        feasible=outcome.completed and all(bound.excess(outcome) <= FEASIBLE for bound in problem.bounds),
+        solves=len(seen),
+        settled=bool(found.status == 0),
+    )
 
 
 def optimum_section(found: Optimum) -> Section:
@@ -267,24 +282,30 @@ def _sentences(found: Optimum) -> Iterator[str]:
 
 def _starts_table(found: Optimum) -> Table:
     problem, place = found.problem, partial(place_text, found.problem.axes)
-    columns = [
-        Column[End]("start", "begun", place),
-        Column("end", "point", place),
-        Column(f"{problem.measure}, {with_symbols(problem.measure.unit)}", "number", partial(number, digits=6)),
-        Column("limits", lambda each: "met" if each.feasible else "not met"),
-        Column("solves", "solves"),
-        Column("ending", "outcome.ending"),
-    ]
-    return table_of("Starts", columns, found.ends)
+    return table_of(
+        "Starts",
+        columns=[
+            Column[End]("start", "begun", place),
+            Column("end", "point", place),
+            Column(f"{problem.measure}, {with_symbols(problem.measure.unit)}", "number", partial(number, digits=6)),
+            Column("limits", lambda each: "met" if each.feasible else "not met"),
+            Column("solves", "solves"),
+            Column("ending", "outcome.ending"),
+        ],
+        items=found.ends,
+    )
 
 
 def _check_table(found: Optimum) -> Table:
     """Goal and limits at N and 2N links, and by the finite elements."""
-    rows = tuple(
-        (name, with_symbols(measure.unit), *(number(value, 6) for value in _checked(found, measure)))
-        for name, measure in _numbers(found.problem).items()
+    return Table(
+        "Best point, checked",
+        headers=("number", "unit", "CPRBM", "at 2N", "FEA"),
+        rows=tuple(
+            (name, with_symbols(measure.unit), *(number(value, 6) for value in _checked(found, measure)))
+            for name, measure in _numbers(found.problem).items()
+        ),
     )
-    return Table("Best point, checked", ("number", "unit", "CPRBM", "at 2N", "FEA"), rows)
 
 
 def _numbers(problem: Problem) -> dict[str, Measure]:

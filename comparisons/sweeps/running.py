@@ -116,8 +116,8 @@ def tasks_of(
             continue
         solver: Asked = "compare" if place in checked else asked
         text = own.model_dump_json(exclude={"file"})
-        keys = [_key(each, text, choices) for each in (solver, "compare")]
-        found.append(Task(place + 1, point, own, solver, *keys))
+        key, compared = _key(solver, text, choices), _key("compare", text, choices)
+        found.append(Task(place + 1, point, own, solver, key, compared))
     if refused:
         point, mistake = refused[0]
         values = ", ".join(f"{name} = {value:g}" for name, value in point.items())
@@ -221,10 +221,10 @@ class Runner:
         """
         queue, suspects = deque(tasks), deque[Task]()
         pending: dict[Future[Outcome], Task] = {}
-        executor, settings = self.workers.executor, (self.solvers, self.limit)
 
         def submit(task: Task) -> None:
-            pending[executor.submit(solve_limited, task.scene, self.choices, task.asked, *settings)] = task
+            future = self.workers.submit(solve_limited, task.scene, self.choices, task.asked, self.solvers, self.limit)
+            pending[future] = task
 
         try:
             while queue or pending or suspects:

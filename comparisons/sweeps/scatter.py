@@ -234,8 +234,12 @@ def study(
     values = drawn(distributions, count, indices=indexed)
     nominal = [scene.parameters[name].value for name in names]
     points = tuple(dict(zip(names, map(float, row), strict=True)) for row in (nominal, *values))
-    tasks = tasks_of(scene, points, asked, frozenset(), choices)
-    return Scatter(Sweep(scene, in_file_units(scene, axes_of(points)), tasks), count, indexed, bounds)
+    sweep = Sweep(
+        scene,
+        axes=in_file_units(scene, axes_of(points)),
+        tasks=tasks_of(scene, points, asked, frozenset(), choices),
+    )
+    return Scatter(sweep, count, indexed, bounds)
 
 
 def scatter_section(scatter: Scatter) -> Section:
@@ -284,23 +288,26 @@ def _sentences(scatter: Scatter) -> Iterator[str]:
 
 
 def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
-    headers = ("number", "unit", "nominal", "mean", "deviation", *(f"{percent(level)} below" for level in LEVELS))
     rows = []
     for measure in scattering:
         nominal = measure.values(scatter.nominal)[0]
         size, unit = (1.0, measure.unit) if measure.size != 1.0 else scaled_unit(measure.unit, abs(nominal))
         values = values_of(measure, scatter.standing) / size
-        cells = map(_cell, quantiles(values))
         rows.append(
             (
                 str(measure),
                 with_symbols(unit),
                 *map(_plain, (nominal / size, values.mean(), values.std(ddof=1))),
-                *cells,
+                *map(_cell, quantiles(values)),
             )
         )
-    note = "Last stations; complete answers on the branch of the nominal point. In brackets the ends of the interval."
-    return Table("Quantiles", headers, tuple(rows), note)
+    return Table(
+        "Quantiles",
+        headers=("number", "unit", "nominal", "mean", "deviation", *(f"{percent(level)} below" for level in LEVELS)),
+        rows=tuple(rows),
+        note="Last stations; complete answers on the branch of the nominal point. In brackets the ends of the "
+        "interval.",
+    )
 
 
 def _limit_table(scatter: Scatter) -> Table:
@@ -311,13 +318,16 @@ def _limit_table(scatter: Scatter) -> Table:
 
 def _index_table(scatter: Scatter, found: dict[Measure, Indices]) -> Table:
     names = [axis.name for axis in scatter.sweep.axes]
-    rows = tuple(
-        (str(measure), name, *(_cell(order[place]) for order in each))
-        for measure, each in found.items()
-        for place, name in enumerate(names)
+    return Table(
+        "Sobol indices",
+        headers=("number", "parameter", "first order", "total order"),
+        rows=tuple(
+            (str(measure), name, *(_cell(order[place]) for order in each))
+            for measure, each in found.items()
+            for place, name in enumerate(names)
+        ),
+        note="First order: share of the variance by the parameter alone; total order: with all interactions.",
     )
-    note = "First order: share of the variance by the parameter alone; total order: with all interactions."
-    return Table("Sobol indices", ("number", "parameter", "first order", "total order"), rows, note)
 
 
 _plain = partial(number, digits=4)

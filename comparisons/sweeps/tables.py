@@ -153,8 +153,11 @@ def write_page(folder: Path, sweep: Sweep) -> None:
         for task, outcome in sweep.points()
         if not outcome.completed
     )
-    tables = (Table("Points that failed", ("point", "ending", "reason"), failed),) if failed else ()
-    section = Section("", figures=tuple(_figures(sweep, solved, numbers)) if solved else (), tables=tables)
+    section = Section(
+        "",
+        figures=tuple(_figures(sweep, solved, numbers)) if solved else (),
+        tables=(Table("Points that failed", ("point", "ending", "reason"), failed),) if failed else (),
+    )
     put_section(folder, section)
     family = json.dumps(_slider(sweep, solved, numbers[0]) if numbers else {"curves": []}).replace("<", "\\u003c")
     write(folder / "index.html", rendered("sweep.html", {"sweep": sweep, "section": section, "family": family}))
@@ -222,8 +225,11 @@ def _over_parameters(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> 
             low = [sweep.axes[1].of(task.point) if mapped else axes.get_ylim()[0] for task in failed]
             if failed:
                 axes.plot([first.of(task.point) for task in failed], low, "x", color=RED, clip_on=False)
-        caption = "Numbers that depend on the parameters, at the last station. Crosses: points that failed."
-        return finished(figure, "parameters", caption)
+        return finished(
+            figure,
+            "parameters",
+            caption="Numbers that depend on the parameters, at the last station. Crosses: points that failed.",
+        )
 
 
 def _joined(axes: Axes, axis: Axis, solved: Solved, numbers: list[float], *, join: bool) -> None:
@@ -273,11 +279,14 @@ def _curves(sweep: Sweep, solved: Solved, stage: Stage, shown: Sequence[Measure]
                     axes.plot(*own.T, look, color=colour, linewidth=1.0, markersize=2.0)
                 if curve and not outcome.completed:
                     axes.plot(curve[-1]["station"] / step, curve[-1]["value"] / size, "x", color=RED)
-        caption = (
-            f"Stage {stage.name}: curves of all points; colours from {first.text(first.low)} (dark) to "
-            f"{first.text(first.high)} (light). Crosses: the last station of points that failed."
+        return finished(
+            figure,
+            f"curves-{stage.name}",
+            caption=(
+                f"Stage {stage.name}: curves of all points; colours from {first.text(first.low)} (dark) to "
+                f"{first.text(first.high)} (light). Crosses: the last station of points that failed."
+            ),
         )
-        return finished(figure, f"curves-{stage.name}", caption)
 
 
 def _slider(sweep: Sweep, solved: Solved, measure: Measure) -> Mapping[str, Any]:

@@ -9,8 +9,9 @@ import os
 import platform
 import re
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Future
 from contextlib import contextmanager
+from functools import partial
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from comparisons.executor import permit_children, threads
@@ -22,7 +23,7 @@ T = TypeVar("T")
 P = ParamSpec("P")
 
 WINDOW = 16
-"""Number of points that an executor has at a time, so that a result is kept as soon as the result is there."""
+"""Number of points that the workers have at a time, so that a result is kept as soon as the result is there."""
 
 PER_THREAD = 3
 """Number of points per thread of a cluster: one is solved, and two wait at the worker."""
@@ -44,12 +45,12 @@ class Workers(NamedTuple):
     """Workers of a sweep.
 
     Attributes:
-        executor: solves the points.
-        window: function that returns the number of points that the executor has at a time.
+        submit: begins a call of a function with arguments on a worker, and returns the future of the call.
+        window: function that returns the number of points that the workers have at a time.
         lost: errors of a point whose workers died.
     """
 
-    executor: Executor
+    submit: Callable[..., Future[Any]]
     window: Callable[[], int] = lambda: WINDOW
     lost: tuple[type[Exception], ...] = ()
 
@@ -69,7 +70,7 @@ def workers_on(place: str) -> Iterator[Workers]:
         raise SceneError([Mistake("--on", repr(place), allowed)])
     if found["count"]:
         with threads(int(found["count"])) as pool:
-            yield Workers(pool)
+            yield Workers(pool.submit)
     else:
         with _cluster(found["scheduler"]) as workers:
             yield workers
@@ -89,7 +90,11 @@ def _cluster(scheduler: str) -> Iterator[Workers]:
     with client, client.get_executor(pure=False) as pool:
         try:
             client.wait_for_workers(1, timeout=ARRIVE)
-            yield Workers(_OnCluster(pool), lambda: PER_THREAD * sum(client.nthreads().values()), (KilledWorker,))
+            yield Workers(
+                submit=partial(pool.submit, _call, program()),
+                window=lambda: PER_THREAD * sum(client.nthreads().values()),
+                lost=(KilledWorker,),
+            )
         except TimeoutError:
             raise refused(f"no worker after {ARRIVE:g} s", "a scheduler with workers") from None
         except OtherVersionError as error:
@@ -100,29 +105,14 @@ def _cluster(scheduler: str) -> Iterator[Workers]:
             pool.shutdown(wait=False)
 
 
-class _OnCluster(Executor):
-    """Executor of a Dask cluster: every call is a call of :func:`_call`."""
-
-    def __init__(self, pool: Executor) -> None:
-        self._pool = pool
-
-    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:  # noqa: ANN401 - as its base
-        """Future of a call on a worker."""
-        return self._pool.submit(_call, program(), fn, *args, **kwargs)
-
-
 def _call(version: str, function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """Value of a call on a worker of the cluster that has the ``version`` of the client.
 
     Raises:
         OtherVersionError: the worker has another version; a worker may join after the first check.
     """
-    _see_version(version)
+    if program() != version:
+        raise OtherVersionError(f"another version of cprbm, Python or a library on {platform.node()}")
     os.environ.update(ONE_THREAD)  # the child takes the variables over
     permit_children()
     return function(*arguments, **named)
-
-
-def _see_version(version: str) -> None:
-    if program() != version:
-        raise OtherVersionError(f"another version of cprbm, Python or a library on {platform.node()}")

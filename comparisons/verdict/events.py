@@ -146,7 +146,9 @@ def released(critical: Critical) -> float | None:
 
     A bifurcation with an energy that falls by less than the round-off of both energies releases none.
     """
-    fall = 0.0 if critical.after is None else critical.energy - critical.after
+    if critical.after is None:
+        return None
+    fall = critical.energy - critical.after
     return fall if fall > CONTINUES * abs(critical.energy) else None
 
 
@@ -191,7 +193,6 @@ def _with_passed_points(runs: Runs, stage: Stage, row: CriticalRow, here: Mappin
 
 def _critical_row(runs: Runs, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
     span, allowed = span_of(runs.scene, stage), event_tolerance(runs.scene, stage)
-    mechanisms = {name: None if one is None else mechanism(one) for name, one in here.items()}
     row = CriticalRow(
         stage=stage.name,
         place=place,
@@ -201,7 +202,7 @@ def _critical_row(runs: Runs, stage: Stage, place: int, here: Mapping[str, Criti
         span=span,
         allowed=allowed,
         largest=max(allowed, runs.scene.verdict_limit * span) if runs.theory == "bending" else math.inf,
-        mechanisms=mechanisms,
+        mechanisms={name: None if one is None else mechanism(one) for name, one in here.items()},
         ended_before=_ended_before(runs, here["cprbm"], here["fea"]),
     )
     present = {name: one for name, one in here.items() if one is not None}
@@ -210,9 +211,12 @@ def _critical_row(runs: Runs, stage: Stage, place: int, here: Mapping[str, Criti
     located = sum(
         max(one.uncertainty for name, one in present.items() if solver_of(name) == solver) for solver in SOLVERS
     )
-    bounds = _on_load_axis(runs, {name: one.value for name, one in present.items()}, located)
-    difference = abs(present["cprbm"].value - present["fea"].value)
-    return replace(row, difference=difference, theory=_step_of_theory(runs, row), bounds=bounds)
+    return replace(
+        row,
+        difference=abs(present["cprbm"].value - present["fea"].value),
+        theory=_step_of_theory(runs, row),
+        bounds=_on_load_axis(runs, {name: one.value for name, one in present.items()}, located),
+    )
 
 
 def _step_of_theory(runs: Runs, row: CriticalRow) -> float:
@@ -335,12 +339,11 @@ def _events(runs: Runs, stage: Stage, where: Where, states: Mapping[str, Mapping
         unsettled.add(PASSED)
     if _on_mirror_images(runs, runs.at(where)):
         unsettled.add(MIRRORED)
-    is_between = bool(between) or is_near(one for answer in runs.pair for one in answer.critical)
     return StationEvents(
-        None if BRANCH in between else here[SOLVERS[0]][BRANCH],
-        is_between,
-        frozenset(unsettled),
-        frozenset(contradictory - unsettled),
+        branch=None if BRANCH in between else here[SOLVERS[0]][BRANCH],
+        between=bool(between) or is_near(one for answer in runs.pair for one in answer.critical),
+        unsettled=frozenset(unsettled),
+        contradictory=frozenset(contradictory - unsettled),
     )
 
 

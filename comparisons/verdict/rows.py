@@ -158,8 +158,12 @@ def rows_of(runs: Runs) -> tuple[Row, ...]:
         for probe in scene.probes_in(where[0]):
             pair = stations["cprbm"], stations["fea"]
             row = bare_row(scene, pair, probe, where, scales[where[0], probe.name])
-            shared = sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None
-            row = replace(row, events=events[where], shared=shared, missing=missing)
+            row = replace(
+                row,
+                events=events[where],
+                shared=sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None,
+                missing=missing,
+            )
             found.append(_measured(runs, row, stations, exact, other))
     return _with_largest_uncertainties(found)
 

@@ -191,8 +191,15 @@ def runs_of(
     absences = {name: each for name, each in results.items() if isinstance(each, str) and each}
     if "exact" in answers and not answers["exact"].stations:
         absences["exact"] = answers.pop("exact").sentence
-    solids = tuple(each for name, each in results.items() if name.startswith("solid") and isinstance(each, Answer))
-    return Runs(scene, theory, answers, absences, sizes, solids, settled)
+    return Runs(
+        scene,
+        theory,
+        answers,
+        absences,
+        sizes,
+        solids=tuple(each for name, each in results.items() if name.startswith("solid") and isinstance(each, Answer)),
+        settled=settled,
+    )
 
 
 def other_theory(theory: Kinematics) -> Kinematics:

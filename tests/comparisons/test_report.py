@@ -93,7 +93,7 @@ def files(tmp_path):
 @pytest.fixture
 def undrawn(monkeypatch):
     """Reports without figures, which take longest of all that is no solve."""
-    monkeypatch.setattr(report, "figures_of", lambda found: ())
+    monkeypatch.setattr(page, "figures_of", lambda found: ())
 
 
 @pytest.fixture(scope="module")
@@ -341,7 +341,7 @@ def comparison():
 def put(comparison, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report") / "new" / "folder"
     figures = page.figures_of(comparison)
-    page.put_case(folder, comparison, figures)
+    page.put_case(folder, comparison)
     page.put_page(folder, page.report_page([page.case_chapter(comparison, figures)]))
     return folder
 
@@ -426,7 +426,7 @@ def test_a_link_leads_no_file_out_of_the_folder(comparison, tmp_path):
         each.mkdir()
     (folder / "hinge").symlink_to(elsewhere)
     with pytest.raises(OSError, match="outside the report's folder"):
-        page.put_case(folder, comparison, ())
+        page.put_case(folder, comparison)
     assert list(elsewhere.iterdir()) == []
     (folder / "index.html").symlink_to(elsewhere / "index.html")
     page.put_page(folder, page.report_page([]))
