@@ -15,7 +15,8 @@ differs if a solver lacks it otherwise, if the mechanisms differ, or if |λ_c �
 runs of one solver disagree, or U > T, or, in ``bending``, θ > max(T, W).  It agrees otherwise.
 
 A fold of one solver and a bifurcation of the other at |λ_c − λ_f| ≤ U are undecided: the loads agree, and the kind of
-the critical point is open.  An answer states no mode that could tell whether both are one point.
+the critical point is open.  An answer states no mode that could tell whether both are one point.  So are two contacts
+that let go at one load, as on both sides of a symmetric mechanism.
 
 The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
 stage without ``beyond`` a run may pass a critical point and go on along another branch.  A passed critical point stands
@@ -120,9 +121,14 @@ class CriticalRow:
 
     @property
     def kind_open(self) -> bool:
-        """Whether one solver has a fold and the other solver a bifurcation, at loads that agree."""
-        pair = {one and one.loss for one in (self.cprbm, self.fea)}
-        return pair == UNSTABLE and self.bounds is not None and self.difference <= self.bounds.total
+        """Whether the solvers have a fold and a bifurcation, or two contacts that let go, at loads that agree."""
+        kinds = {one and one.loss for one in (self.cprbm, self.fea)}
+        return (
+            len(set(self.mechanisms.values())) > 1
+            and kinds in (UNSTABLE, {Loss.CONTACT})
+            and self.bounds is not None
+            and self.difference <= self.bounds.total
+        )
 
     @property
     def word(self) -> Word:

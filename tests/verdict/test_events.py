@@ -80,6 +80,7 @@ def in_shear(**change):
         (replace(C, loss=Loss.CONTACT, what="contact"), F, "DIFFER EVENTS"),
         (replace(C, loss=Loss.STOP, what="stopB"), replace(F, loss=Loss.STOP, what="stopB"), "AGREE"),
         (replace(C, loss=Loss.STOP, what="stopB"), replace(F, loss=Loss.STOP, what="stopC"), "DIFFER EVENTS"),
+        (replace(C, loss=Loss.CONTACT, what="left"), replace(F, loss=Loss.CONTACT, what="right"), "UNDECIDED BRANCH"),
         (C, replace(F, jumps=False), "DIFFER EVENTS"),
         (replace(C, jumps=False), F, "DIFFER EVENTS"),
         (unsure, F, "UNDECIDED BRANCH"),
@@ -103,6 +104,7 @@ def in_shear(**change):
         "contact",
         "same stop",
         "another stop",
+        "another contact",
         "missing in the finite elements",
         "missing in the CPRBM",
         "mechanisms of one solver",
@@ -128,7 +130,7 @@ def test_the_sentence_names_both_kinds_at_one_load(forward):
     sentence = compared(forward, replace(C, **BIFURCATES), F).verdict.sentence
     assert "(bifurcation) in the CPRBM and" in sentence
     assert "(fold) in the finite elements" in sentence
-    assert "the loads agree, the kinds of the critical point do not: UNDECIDED" in sentence
+    assert "the loads agree, the mechanisms do not: UNDECIDED" in sentence
 
 
 @pytest.mark.parametrize(("beyond", "word"), [(0, "UNDECIDED RUN_ENDED"), (1, "DIFFER EVENTS")])
