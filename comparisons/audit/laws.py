@@ -29,10 +29,11 @@ difference of the stated M, which is linear between the stated places.  Elements
 Σ l³ Q²/(24 E·I), with l of the element.
 
 *Path.*  Between two stations of one branch the trapezoidal rule gives ΔΠ = h (g₀ + g₁)/2.  The allowance is the
-range of g in the interval, also at stations of other stages, and twice the error term h² Δg′/12.  Only a loss of energy
-counts: a silent jump to another state loses energy that no work accounts for, and a reaction may rise and fall between
-two stations.  Under a load u rises with P on a path of minima, whatever contacts close.  An interval of a drive is not
-judged if a contact closes or opens there.  A silent jump in such an interval is not seen.
+range of g in the interval, also at stations of other stages, and twice the error term h² Δg′/12.  Δg′ is the larger
+difference to the secant of a neighbouring interval, since g has a kink where the branch bifurcates.  Only a loss of
+energy counts: a silent jump to another state loses energy that no work accounts for, and a reaction may rise and fall
+between two stations.  Under a load u rises with P on a path of minima, whatever contacts close.  An interval of a drive
+is not judged if a contact closes or opens there.  A silent jump in such an interval is not seen.
 
 *Critical points.*  The energy beyond a critical point belongs to a value up to the next station: the work up to that
 station is allowed.  Without a next station the energy is not judged.

@@ -67,7 +67,10 @@ def answer_tables(scene: Scene, answer: Answer, tolerances: Sequence[Tolerance] 
         Column[Event]("stage", "stage"),
         Column("contact", "contact"),
         Column("event", "kind"),
-        Column("at", lambda event: load_text(scene, event.stage, event.value)),
+        Column[Event](
+            "at",
+            lambda event: " to ".join(load_text(scene, event.stage, at) for at in event.interval or (event.value,)),
+        ),
     ]
     found = (
         search_table(scene, tolerances),
