@@ -12,6 +12,9 @@ chain add ε √m of the largest moment.  A contact holds positions, which a gap
 longest beam; over a link that is an angle of some ε/h, in two neighbouring joints, and the force on a node is a moment
 over h.  A moving place rests where the slope of the gap vanishes: the force times the slope's round-off over the gap's
 curvature is a force, large between beams of nearly equal curvature.  Four times the sum is the floor.
+
+Where a row prescribes the gap of a closed place too, both share the force, and round-off decides.  A round-off of all
+gaps then changes the force by a large part.
 """
 
 from math import sqrt
