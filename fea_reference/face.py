@@ -69,6 +69,7 @@ _BLUNT = 0.5  # sine of half the angle of a tip on which loose penalties hold a 
 _SHARPEST = 1e5
 _LOOKED = 4  # Gauss points to determine the direction of a zone's pressure
 _ALONG = 0.5  # of a motion: a smaller part across the beam counts as motion along the beam
+_FACING = 0.1  # least cosine between the beam's normal and the direction of a tip that presses
 _PARTS = 4  # subdivision of an element for the crossing check
 
 
@@ -170,15 +171,13 @@ def _swept_over_tip(face: Face, views: Sequence[_View], zones: Sequence[Zones]) 
     if tips[0][0].size == 0:
         return False
     first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
-    for end in face.own:
-        over &= np.abs(first.zeta - end) > 1.0
+    over &= (np.abs(first.zeta - np.reshape(face.own, (-1, 1))) > 1.0).all(axis=0)
     over &= last.distance_along(tips[1][1]) < 0.0
     if not over.any():
         return False
-    # a tip in the beam is no deeper than the largest overlap
-    over &= (first.d * last.d <= 0.0) | (
-        before.pressed_at(first, tips[0][1], zones[0]) & (np.abs(first.d) <= face.edge.at(first.zeta) - zones[0].least)
-    )
+    # a point of a flank that runs across the beam is no tip, however deep the point lies below the beam
+    facing = np.abs(np.cos(np.angle(first.n.conj() * tips[0][1]))) > _FACING
+    over &= (first.d * last.d <= 0.0) | (facing & before.pressed_at(first, tips[0][1], zones[0]))
     return bool((over & ~after.pressed_at(last, tips[1][1], zones[1])).any())
 
 
@@ -191,8 +190,7 @@ def tip_depth(model: Model, face: Face, z: State) -> float:
     there = swept.closest_places(view.line, tips)
     depth = face.edge.at(there.zeta) - there.distance_along(out)
     deep = there.found & (depth > 0.0)
-    for end in face.own:
-        deep &= np.abs(there.zeta - end) > 1.0
+    deep &= (np.abs(there.zeta - np.reshape(face.own, (-1, 1))) > 1.0).all(axis=0)
     if not deep.any():
         return 0.0
     return float(depth[deep & view.pressed_at(there, out, zones_of(model, face, z))].max(initial=0.0))
