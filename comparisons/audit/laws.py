@@ -330,12 +330,12 @@ def path(scene: Scene, answer: Answer, states: Sequence[StationState]) -> Iterat
         of = list(group)
         x, g = np.array([(state.station.value, _driving(state)) for state in of]).T
         strain, work, even = np.array([_energies(state) for state in of]).T
-        h, bends = np.diff(x), np.abs(np.diff(np.diff(g) / np.diff(x), prepend=np.nan, append=np.nan))
+        h, bends = np.diff(x), np.pad(np.abs(np.diff(np.diff(g) / np.diff(x))), 1)
         lost = np.diff(strain - work) - 0.5 * h * (g[1:] + g[:-1])
         error = 2.0 * even + FITTED * (strain + np.abs(work)) + ENERGY_ROUND_OFF * of[0].natural
         allowed = (
             np.abs(h) * _ranges(states, of[0].stage.steps, x)
-            + h**2 * np.fmax(np.fmax(bends[1:], bends[:-1]), 0.0) / 6.0
+            + h**2 * np.maximum(bends[1:], bends[:-1]) / 6.0
             + error[1:]
             + error[:-1]
         )

@@ -34,7 +34,7 @@ _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True, slots=True)
 class OffsetRow:
-    """All offset points of one chain at one distance.
+    """All offset points of a chain at a distance.
 
     Attributes:
         spacing: its name in the question.

@@ -227,7 +227,7 @@ class Pressed(NamedTuple):
 def contact_changes(
     before: Solved, after: Solved, closing: frozenset[int], solve: Callable[[float], Solved]
 ) -> list[Change]:
-    """The first closing of pairs, and the openings of pairs, in a step.
+    """The first closing of pairs, and the first opening with the pairs that open together, in a step.
 
     Args:
         before, after: the step.
@@ -241,9 +241,9 @@ def contact_changes(
     changes = _closing(before, after, closing, solve) if closing else []
     if (apart_pairs(before, new - old) or (closing and not changes)) and turned(before, after) > SMALLEST_TURN:
         raise NotConvergedError("a contact closes on the way to a state that the contact alone leads to")
-    openings = sum((_opening(pair, solve) for pair in sorted(old - new)), list[Change]())
-    pairs = frozenset(each.first for each in openings if each.share < min(openings).share + TOGETHER)
-    return changes + [opening._replace(pairs=pairs) for opening in openings if opening.first in pairs]
+    openings = sorted((each for pair in sorted(old - new) for each in _opening(pair, solve)), key=itemgetter(0))
+    together = frozenset(each.first for each in openings if each.share < openings[0].share + TOGETHER)
+    return changes + [each._replace(pairs=together) for each in openings[:1]]
 
 
 def _closing(before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float], Solved]) -> list[Change]:

@@ -28,7 +28,7 @@ evenly to zero.  No force with a limit has this law.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -177,10 +177,11 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
     mode, earlier, first = softest(last.solved), _earlier(trail, width), _earlier(trail, EARLIER * width)
     if earlier is None or first is None:
         return None
-    zero = _vanishes(_curvature, earlier, last)
-    even = abs(zero - _vanishes(_curvature, first, earlier)) < EVEN * (earlier.t - first.t)
+    curvature = cache(lambda solved: softest(solved).curvature)
+    zero = _vanishes(curvature, earlier, last)
+    even = abs(zero - _vanishes(curvature, first, earlier)) < EVEN * (earlier.t - first.t)
     fold = _along(last.solved, mode, change) > FOLDING and not even
-    zero = _vanishes(lambda solved: _curvature(solved) ** 2, earlier, last) if fold else zero
+    zero = _vanishes(lambda solved: curvature(solved) ** 2, earlier, last) if fold else zero
     if not zero - last.t <= NEAR * width:
         return None
     return CriticalPoint(
@@ -193,10 +194,6 @@ def critical_point(trail: list[Reached], beyond: float, change: Array) -> Critic
         mode.curvature,
         mode.curvature,
     )
-
-
-def _curvature(solved: Solved) -> float:
-    return softest(solved).curvature
 
 
 def _along(solved: Solved, mode: Mode, change: Array) -> float:

@@ -177,6 +177,11 @@ def contact_measures(solved: Solved) -> tuple[float, float, float, float]:
     free = ~closed & ~follows & ~beside & (~places.moves | corner) & (thick | ~places.at_point)
     overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
     values = np.abs(solved.factors.bordered.columns.values)
-    changes = np.abs(solved.factors.solve_both(np.zeros(solved.system.size), np.full(len(values), EPSILON))[1])
-    unknown = float(changes.max(initial=0.0)) / max(1.0, float(places.force.max(initial=0.0)))
+    # a state without contacts solves nothing
+    changes = (
+        solved.factors.solve_both(np.zeros(solved.system.size), np.full(len(values), EPSILON))[1]
+        if len(values)
+        else values
+    )
+    unknown = float(np.abs(changes).max(initial=0.0)) / max(1.0, float(places.force.max(initial=0.0)))
     return float(values.max(initial=0.0)), overlap, float(np.max(-places.force[closed], initial=0.0)), unknown

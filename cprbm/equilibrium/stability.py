@@ -65,9 +65,10 @@ def blocked(solved: Solved) -> Solved:
     """The state with open idle places, and with the closed touching places that block a mode in both senses."""
     system, state = solved.system, solved.state
     places, closed = state.contacts.places, state.contacts.closed.copy()
+    arcs = arcs_of(system.geometry.arrays, places)
     for pair in set(places.pair[closed].tolist()):
         mine = np.flatnonzero(closed & (places.pair == pair))
-        between = mine[np.argsort(arcs_of(system.geometry.arrays, places)[mine])][1:-1]
+        between = mine[np.argsort(arcs[mine])][1:-1]
         closed[between] = places.force[between] >= IDLE * places.force[mine].max()
     if np.any(closed != state.contacts.closed):
         # places with a shared force open together

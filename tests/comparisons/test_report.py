@@ -58,7 +58,7 @@ class Counting:
     """A solver that counts how often it is asked, and is stopped at a certain time."""
 
     solver: MadeUp
-    asked: count = field(repr=False)  # what is kept hangs on who answers
+    asked: count = field(repr=False)  # the key of a kept answer contains the solver
     stopped_at: int = field(repr=False)
 
     def __call__(self, scene, choices):
@@ -82,7 +82,7 @@ def reported(out, solvers, *arguments, asked=("hinge",)):
 
 @pytest.fixture
 def files(tmp_path):
-    """Two questions of one beam each, which are soon drawn."""
+    """Two questions with a single beam, so that the figures take little time."""
     found = []
     for name, length in (("one", 0.113), ("two", 0.127)):
         found.append(tmp_path / f"{name}.toml")
@@ -208,7 +208,7 @@ def test_a_run_that_was_ended_goes_on_with_what_was_not_there(tmp_path, files):
     again, after = counting()
     code, page = reported(tmp_path / "ended", again, *SHORT, asked=files)
     assert code == 0
-    assert (before() - 1, after()) == (of_both() - 2, 2)  # the one at which it was ended is asked again
+    assert (before() - 1, after()) == (of_both() - 2, 2)  # the last question before the end is asked again
     assert page == (tmp_path / "whole" / "index.html").read_bytes()
     assert not (tmp_path / "ended" / ".unfinished").exists()
 

@@ -1,19 +1,19 @@
-"""By how much a solver's answer to a scene's image departs from what its answer to the scene says it is.
+"""Departures of a solver's answer to the image of a scene from the image of the answer to the scene.
 
 ======  ==============================================================================================
 symbol  meaning
 ======  ==============================================================================================
-v, w    a probe's value at a station, in the answer to the scene and in that to the image
-v′      what v is in the image
+v, w    a probe's value at a station, in the answer to the scene and in the answer to the image
+v′      image of v
 c       the probe's scale in the stage in the image, :mod:`comparisons.quantities`
 e       |w − v′|/c, the violation
 r       residual or its floor by the certificate of the image's station
 u, u′   the uncertainties of v and w on their discretisations, :mod:`tests.relations.uncertain`
 ======  ==============================================================================================
 
-An image that leaves the discretised problem what it is holds to e ≤ max(1e-7, r), another to e ≤ max(1e-7, r, u + u′).
-An image that is refused, that alone completes or alone does not, that ends before a station that the scene's answer
-has, or that has another shape of value, violates it wholly: e = ∞.
+If the image keeps the discretised problem, e ≤ max(1e-7, r) holds; otherwise e ≤ max(1e-7, r, u + u′).  A refused
+image violates the relation wholly, e = ∞.  So does an answer to the image with another ending, with fewer stations or
+with values of another shape.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.executor import Solver
 from comparisons.quantities import arc_lengths, norm, probe_scales
-from comparisons.stations import station_of
+from comparisons.stations import begins_at, station_of
 from comparisons.verdict.point_forces import away_from_point_forces
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer, scene_from
 from cprbm_scene.answer import Array, Flags
@@ -41,7 +41,7 @@ TARGET = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class Departure:
-    """What one number of an image's answer departs from.
+    """Departure of a number in an image's answer from the expected number.
 
     Attributes:
         probe: its name, or that of what is to vanish; empty where no number is meant.
@@ -178,16 +178,15 @@ def _by_itself(image: Image, other: Solved) -> Iterator[Departure]:
 
 
 def _criticals(first: Solved, image: Image, other: Solved) -> Iterator[Departure]:
-    """Of where branches end, as shares of the largest value of the stage; each is known to its own uncertainty."""
+    """Departures of critical points, over the largest value of the load in the stage; uncertainties are allowed."""
     mine, theirs = first.answer, other.answer
     if len(mine.critical) != len(theirs.critical):
         why = f"{len(mine.critical)} critical values became {len(theirs.critical)}"
         yield Departure("critical", "", math.nan, math.inf, why=why)
         return
-    stages = other.scene.stages
+    # a stage may lead to zero
     largest = {
-        stage.name: max(abs(value) for each in stages if each.steps == stage.steps for value in each.stations)
-        for stage in stages
+        stage.name: max(map(abs, (begins_at(other.scene, stage), *stage.stations))) for stage in other.scene.stages
     }
     meshes = [[0.0] * len(theirs.critical)] * 2
     if image.discretised_anew and theirs.critical:

@@ -183,7 +183,7 @@ def test_a_run_that_is_killed_goes_on_from_what_it_had(tmp_path):
     process.wait()
     process.stdout.close()
     begun = time.monotonic()
-    while _alive(process.pid):  # the host hears that nobody asks any more, and ends what it has forked
+    while _alive(process.pid):  # the host notices the end of the command, and ends the forked processes
         assert time.monotonic() < begun + 30.0
         time.sleep(0.05)
     kept = Kept(tmp_path / f"outcomes-{digest(Plan(5))}.jsonl")
@@ -342,7 +342,7 @@ def test_an_answer_is_audited_once_however_often_it_is_compared(monkeypatch):
 
 
 def test_the_part_that_was_reached_can_be_wrong():
-    """One solver ends early, and what it reached is certified and differs."""
+    """A solver ends early with certified stations that differ."""
     scene = scene_from(fated(1, 0).data)
     stiff = MadeUp("cprbm", 2e-3, stiffness=1.02, contact=False)
 

@@ -59,7 +59,7 @@ def around(value):
 
 @SOLVERS
 def test_pinned_arch_deflects_sideways(solve, within):
-    # reference: arch.py, bifurcation; its symmetric branch goes on to 1.28 times that force
+    # reference: arch.py, bifurcation; the symmetric branch goes on to 1.28 times the force
     force = PINNED_ARCH.bifurcation.force
     assert PINNED_ARCH.force_fold.force > 1.25 * force
     answer = solve(branches.arch(PINNED_ARCH.half_angle, "pin", "pin", around(force)))
@@ -348,7 +348,7 @@ def test_column_that_only_a_circle_holds(solve, within):
     assert lost(answer) == [(Loss.CONTACT, "touch")]
     critical = answer.critical[0]
     assert critical.stage == "release"
-    # Q* itself is small: what it is small against is the force that holds the column
+    # Q* is small against the force that holds the column
     assert critical.value == pytest.approx(free.side_force * FORCE, abs=within * FORCE)
     assert critical.left < 0.0 < critical.curvature
     assert critical.energy == pytest.approx(HELD.energy(free) * MOMENT, abs=within * MOMENT)
