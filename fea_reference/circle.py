@@ -91,21 +91,17 @@ def passes_through(model: Model, circle: Circle, before: State, after: State) ->
     The beam sweeps over the centre if the closed loop of old line, end's path, new line and start's path winds around
     the centre. During the motion the beam may lie in the circle by the deviation of straight paths of a turning beam.
     """
-    beam = model.beams[circle.first]
-    old, new = (model.line(beam, z).points - centre(model, circle, z)[:, None] for z in (before, after))
-    loop = np.concatenate([old, new[:, ::-1], old[:, :1]], axis=1)
-    a, b = loop[:, :-1], loop[:, 1:]
-    winding = np.arctan2(a[0] * b[1] - a[1] * b[0], (a * b).sum(axis=0)).sum()
-    if abs(winding) > np.pi:
-        return True
+    lines = [model.line(model.beams[circle.first], z) for z in (before, after)]
     centres = [np.array([complex(*centre(model, circle, z))]) for z in (before, after)]
-    lines = [model.line(beam, z) for z in (before, after)]
+    old, new = (line.nodes - c for line, c in zip(lines, centres, strict=True))
+    loop = np.concatenate([old, new[::-1], old[:1]])
+    if abs(np.angle(loop[1:] * loop[:-1].conj()).sum()) > np.pi:
+        return True
     first, last, over = swept_over((lines[0], centres[0]), (lines[1], centres[1]))
     if (over & (first.d * last.d < 0.0)).any():
         return True  # a circle smaller than the distance between chords and arcs
-    longest_path = np.hypot(*(new - old)).max()
-    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * longest_path**2
-    return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
+    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * np.abs(new - old).max() ** 2
+    return any(np.abs(old + part * (new - old)).min() < allowed for part in _BETWEEN)
 
 
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:

@@ -56,7 +56,7 @@ from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import ends_on_edge
 from fea_reference.rigid_touch import LAYERS, by_motions, on_bodies, rigid_touch
 from fea_reference.state import Complex, State, summed
-from fea_reference.swept import ClosestPlaces, swept_over
+from fea_reference.swept import ClosestPlaces, cut_by_end, swept_over
 from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, gauss_places
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, no_zones
 
@@ -170,6 +170,8 @@ def _swept_over_tip(face: Face, views: Sequence[_View], zones: Sequence[Zones]) 
     (before, after), tips = views, [view.tips() for view in views]
     if tips[0][0].size == 0:
         return False
+    if cut_by_end((before.line, tips[0][0]), (after.line, tips[1][0]), face.edge.nearest).any():
+        return True
     first, last, over = swept_over((before.line, tips[0][0]), (after.line, tips[1][0]))
     over &= (np.abs(first.zeta - np.reshape(face.own, (-1, 1))) > 1.0).all(axis=0)
     over &= last.distance_along(tips[1][1]) < 0.0

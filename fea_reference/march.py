@@ -420,10 +420,11 @@ class March:
         gaps = zip(self.gaps(self.system), self.gaps(system), strict=True)
         return any(after < 0.0 <= before for before, after in gaps)
 
-    def _passed_rigid_body(self, system: System) -> bool:
-        """True if ``system``, with other penalties, lies beyond a rigid body that presses now."""
+    def _lost_contact(self, system: System) -> bool:
+        """True if ``system``, with other penalties, lies beyond a rigid body that presses now, or has slipped off."""
         rigid = (pair for pair in self.penalties if isinstance(pair, Rigid))
-        return any(passed_through(self.model, pair, self.system.z, system.z) for pair in rigid)
+        passed = any(passed_through(self.model, pair, self.system.z, system.z) for pair in rigid)
+        return passed or self.slip_failure(system, "") is not None
 
     def _predicted_step(self, load: int, step: float, rate: Array) -> Array:
         """Predicted motion (size,) for a ``step`` in λ: third order if the last step applies, else first order."""
@@ -573,7 +574,9 @@ class March:
         def sought(value: float, which: int, path: Callable[[float], State] | None) -> float:
             # a gap within half the closing tolerance counts as zero; the aim lies inside the tolerance, because beyond
             # its edge an end without thickness would be on the other side
-            gap = (gaps(value) if path is None or value in known else self._gaps_at(path(value)))[which]
+            gap = (gaps(value) if path is None or value in known else self.gaps(replace(self.system, z=path(value))))[
+                which
+            ]
             return 0.0 if 0.0 <= gap <= 0.5 * tolerances[which] else gap - _INSIDE * tolerances[which]
 
         def root_between(low: float, high: float, which: int) -> float:
@@ -604,10 +607,6 @@ class March:
         except (ArithmeticError, ValueError):
             return None
         return None
-
-    def _gaps_at(self, z: State) -> list[float]:
-        """Gaps in a state near the current system."""
-        return self.gaps(replace(self.system, z=z))
 
     def _path(self, load: int, known: Mapping[float, System], low: float, high: float) -> Callable[[float], State]:
         """Predicted state by value between two known equilibria, a Hermite cubic from their path tangents."""
@@ -692,8 +691,8 @@ class March:
         solved = self._equilibrium(looser, self.values, self.system.z, self.depths(), self.pushes())
         if not solved.converged or _too_deep(self.model, solved.system) or self._overlaps_more(solved.system):
             return False
-        contact_lost = self._passed_rigid_body(solved.system) or self.slip_failure(solved.system, "") is not None
-        if self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION and not contact_lost:
+        near = self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
+        if near and not self._lost_contact(solved.system):
             self.system, self.penalties, self.loosened = solved.system, looser, True
             self.exchange_beams()
             return True
@@ -825,7 +824,7 @@ class March:
                 and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
                 and (all_positive(self.model, solved.system) or not self.is_minimum)
             )
-            if near and not self._passed_rigid_body(solved.system):
+            if near and not self._lost_contact(solved.system):
                 falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)

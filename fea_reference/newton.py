@@ -116,7 +116,9 @@ def equilibrium(
         opened = [
             contact.pair
             for contact in system.touches
-            if _opened_unexpectedly(contact, depths, predicted) and contact.pair not in held_depths
+            if not contact.closed
+            and contact.pair in depths.keys() - held_depths.keys()
+            and float(predicted[contact.pair].sum()) > 0.0
         ]
         if opened and not settled:
             held_depths = {**held_depths, **{pair: depths[pair] for pair in opened}}
@@ -143,11 +145,6 @@ def _needs_holding(contact: Touch, depths: Mapping[Contact, float], before: Mapp
         return False
     pressed = contact.pair in before and float(before[contact.pair].sum()) > 0.0
     return pressed or contact.penetration > _TOUCHING * contact.pair.scale
-
-
-def _opened_unexpectedly(contact: Touch, depths: Mapping[Contact, float], predicted: Mapping[Contact, Array]) -> bool:
-    """True if a contact opened although its predicted force is positive."""
-    return contact.pair in depths and not contact.closed and float(predicted[contact.pair].sum()) > 0.0
 
 
 def _near_depth(contact: Touch, depth: float) -> bool:

@@ -10,7 +10,8 @@ d       n·(x − c)
 
 Both states have a closest place, the second found from the first. If the beam swept over the point, d changes sign.
 This test is exact for any small obstacle. A beam that went around the point with its end has no closest place in a
-short step; a beam with a closer part elsewhere moved farther than a step.
+short step; the point must not have crossed the end's face. A beam with a closer part elsewhere moved farther than a
+step.
 """
 
 from dataclasses import dataclass
@@ -66,6 +67,20 @@ def swept_over(
     paths = [np.abs(_at(new, places.zeta) - c_1 - _at(old, places.zeta) + c_0) for places in (first, last)]
     near = np.abs(last.d - first.d) <= _WAY * np.maximum(*paths)
     return first, last, first.found & last.found & near
+
+
+def cut_by_end(before: tuple[NeutralLine, Complex], after: tuple[NeutralLine, Complex], half: float) -> Flags:
+    """True for points (k,) that pass through the flat end of a beam of ``half`` thickness, between two states.
+
+    The points come from a side of the beam, on a path that is straight in the frame of the end.
+    """
+    old, new = (
+        (points - line.nodes[[0, -1], None]) / (line.aheads[[0, -1], None] * [[-1.0], [1.0]])
+        for line, points in (before, after)
+    )
+    passes = (np.abs(old.imag) >= half) & (old.real < 0.0) & (new.real > 0.0)
+    share = old.real / np.where(passes, old.real - new.real, 1.0)
+    return np.asarray((passes & (np.abs(old.imag + share * (new.imag - old.imag)) < half)).any(axis=0))
 
 
 def _at(line: NeutralLine, zeta: Array) -> Complex:

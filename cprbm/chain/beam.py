@@ -184,7 +184,7 @@ class BeamChain:
         grown = length * np.tanh(np.abs(self.arcs - self.arcs[-end]) / length)
         return replace(self, shear=self.shear * (1.0 - np.abs(np.diff(grown)) / np.diff(self.arcs)))
 
-    def leaving_angle(self, end: Literal["start", "end"]) -> float:
+    def leaving_angle(self, end: str) -> float:
         """Angle at rest at which the neutral line leaves an end."""
         return self.end_angles[0] if end == "start" else self.end_angles[1] + np.pi
 

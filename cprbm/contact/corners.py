@@ -54,10 +54,13 @@ def sides_behind(points: Array, side: int, reach: float) -> tuple[Array, Array]:
     """
     first, last = (chord / np.hypot(*chord) for chord in (points[0] - points[1], points[-1] - points[-2]))
     ends, ways = (points[0], points[-1]), [side * np.array([-first[1], first[0]]), side * np.array([last[1], -last[0]])]
-    lengths = []
-    for end, way in zip(ends, ways, strict=True):
-        found = [_crossing(end, way, a, b - a) for a, b in pairwise(points)]
-        lengths.append(min((far for far, share in found if far > BEHIND and 0.0 <= share <= 1.0), default=np.inf))
+    crossings = [
+        [_crossing(end, way, a, b - a) for a, b in pairwise(points)] for end, way in zip(ends, ways, strict=True)
+    ]
+    lengths = [
+        min((far for far, share in found if far > BEHIND and 0.0 <= share <= 1.0), default=np.inf)
+        for found in crossings
+    ]
     meet = _crossing(ends[0], ways[0], ends[1], ways[1])
     if np.all((meet > BEHIND) & (meet < np.minimum(lengths, reach))):
         lengths = meet.tolist()

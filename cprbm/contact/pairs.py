@@ -19,13 +19,11 @@ in the same way.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from math import tau
-from typing import Literal
 
 import numpy as np
 
-from cprbm.chain import Form, Mechanism, Row
+from cprbm.chain import END, Form, Mechanism, Row, ends_of
 from cprbm.contact.corners import Corner, corner_curve, part_of, sharp_bends, sharp_corners, sides_behind, with_marks
 from cprbm.contact.curve import NO_SIDES, Curve, Frames, beam_curve
 from cprbm_scene import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
@@ -121,9 +119,10 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
         side = 1 if (contact.side == "above") == (ascends == (contact.axis == "x")) else -1
     if isinstance(contact, EdgeContact):
         m.rows.extend(_pin_rows(m, contact_name, contact, points, side))
-    sides = NO_SIDES
-    if isinstance(contact, FunctionContact | SplineContact | LineContact) and not getattr(contact, "closed", False):
-        sides = sides_behind(points, side, REACH)
+    is_open = isinstance(contact, FunctionContact | SplineContact | LineContact) and not getattr(
+        contact, "closed", False
+    )
+    sides = sides_behind(points, side, REACH) if is_open else NO_SIDES
     if tangents is None:
         return frames.polyline(name, contact.body, np.concatenate([sides[0], points, sides[1]])), side
     return frames.smooth_edge(name, contact.body, points, tangents, length / m.units.length, sides), side
@@ -131,35 +130,30 @@ def _rigid_curve(m: Mechanism, frames: Frames, contact_name: str, contact: Rigid
 
 def _pin_rows(m: Mechanism, name: str, contact: EdgeContact, points: Array, side: int) -> Iterator[Row]:
     """Rows of the angles between a contact's beam and the edge through ``points`` (k, 2), at pins on the edge."""
-    chain, record = m.chains[contact.beam], m.scene.beams[contact.beam]
-    ends: tuple[tuple[Literal["start", "end"], int], ...] = (("start", 0), ("end", -1))
-    for end, link in ends:
-        joint = getattr(record, end)
+    chain = m.chains[contact.beam]
+    for end, link, joint in zip(END, (0, -1), ends_of(m.scene, contact.beam), strict=True):
         if not isinstance(joint, PinnedEnd) or m.scene.body_of(joint.point) != contact.body:
             continue
         pin = m.units.place(m.scene.place_of(joint.point))
         turned = m.angle(contact.beam, link) - m.rotation(contact.body)
         above = 0.5 * float(chain.section.thickness(chain.arcs[[link]])[0]) if contact.thick else 0.0
         behind, ahead = _directions(pin, points, side * above, ON_EDGE * chain.length)
-        for direction, sign in ((ahead, side), (behind, -side)):
-            if direction is not None:
+        for directions, sign in ((ahead, side), (behind, -side)):
+            for direction in directions[-1:]:
                 opening = (sign * (chain.leaving_angle(end) - float(np.arctan2(direction[1], direction[0])))) % tau
                 opening -= tau if opening > tau - STRAIGHT else 0.0
                 yield Row(f"{name}.pin", turned * float(sign) + Form(opening), driven=False, limit=True)
 
 
-def _directions(pin: Array, points: Array, above: float, near: float) -> tuple[Array | None, Array | None]:
-    """Directions from a pin back and on along an edge; None beyond an end of the edge, and for a pin off the edge.
+def _directions(pin: Array, points: Array, above: float, near: float) -> tuple[Array, Array]:
+    """Directions (k, 2) from a pin back and on along the pieces of an edge below the pin.
 
-    A beam with thickness lies on the edge with the pin half the thickness ``above``, positive on the left.
+    Both are empty for a pin off the edge, and one is empty at an end of the edge.  A beam with thickness lies on the
+    edge with the pin half the thickness ``above``, positive on the left.
     """
-    behind: Array | None = None
-    ahead: Array | None = None
-    for a, b in pairwise(points):
-        chord = b - a
-        left = np.array([-chord[1], chord[0]]) / np.hypot(*chord)
-        share = float((pin - a) @ chord / (chord @ chord))
-        if np.hypot(*(a + min(1.0, max(0.0, share)) * chord + above * left - pin)) < near:
-            ahead = chord if share < 1.0 - AT_CORNER else ahead
-            behind = -chord if share > AT_CORNER else behind
-    return behind, ahead
+    chords = np.diff(points, axis=0)
+    left = np.column_stack([-chords[:, 1], chords[:, 0]]) / np.hypot(*chords.T)[:, None]
+    shares = ((pin - points[:-1]) * chords).sum(axis=1) / (chords**2).sum(axis=1)
+    nearest = points[:-1] + np.clip(shares, 0.0, 1.0)[:, None] * chords + above * left
+    below = np.hypot(*(nearest - pin).T) < near
+    return -chords[below & (shares > AT_CORNER)], chords[below & (shares < 1.0 - AT_CORNER)]

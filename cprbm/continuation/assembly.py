@@ -129,12 +129,13 @@ def _forbidden(system: System, z: Array) -> Iterator[Mistake]:
         angle = stop_angle(system.mechanism, name).value(z)
         for key, limit, sign in (("least", stop.least, -1.0), ("most", stop.most, 1.0)):
             if limit is not None and sign * (angle - limit) > PASSED:
-                found = (
+                yield Mistake(
+                    f"stops.{name}.{key}",
                     f"{limit:g} rad: a stop that forbids the assembly, by which {stop.beam!r} comes to stand at "
-                    f"{angle:.4g} rad"
+                    f"{angle:.4g} rad",
+                    "limits that the assembled beam keeps, or other moments",
+                    scene.file,
                 )
-                allowed = "limits that the assembled beam keeps, or other moments"
-                yield Mistake(f"stops.{name}.{key}", found, allowed, scene.file)
 
 
 def landing_rows(m: Mechanism) -> Iterator[Row]:

@@ -195,8 +195,11 @@ def drawn_names(system: System, state: State) -> frozenset[str]:
     """Names of the contacts that touch in a state as drawn: such contacts neither close nor open later."""
     geometry = system.geometry
     at_ends = touching_as_drawn(geometry, state.z, state.contacts)
-    names = enumerate(pair.name for pair in geometry.pairs)
-    return frozenset(name for k, name in names if k in at_ends or nearest_place(geometry, state, k)[0] < TOUCHING)
+    return frozenset(
+        pair.name
+        for k, pair in enumerate(geometry.pairs)
+        if k in at_ends or nearest_place(geometry, state, k)[0] < TOUCHING
+    )
 
 
 def kept_open(state: State, pairs: frozenset[int]) -> State:

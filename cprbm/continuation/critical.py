@@ -161,8 +161,9 @@ def _to_end(solved: Solved, pair: int) -> float:
 
 def _earlier(trail: list[Reached], width: float) -> Reached | None:
     """An earlier minimum some widths of the bracket away, else the first; None without any."""
-    first = trail[0] if len(trail) > 1 else None
-    return next((one for one in reversed(trail) if trail[-1].t - one.t >= APART * width), first)
+    return next(
+        (one for one in reversed(trail) if trail[-1].t - one.t >= APART * width), trail[0] if len(trail) > 1 else None
+    )
 
 
 def critical_point(trail: list[Reached], beyond: float, change: Array) -> CriticalPoint | None:

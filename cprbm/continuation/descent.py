@@ -15,9 +15,9 @@ sense, and follows the lower of both.  Moments of the first degree would do no w
 clamped at both ends.  With α near |κ| the softest mode has the largest part in u; with α = 2|κ| the distance from the
 saddle doubles in a step.
 
-The springs of the first step are so stiff that no link turns farther than by the kick, and no later step turns back
-behind a decrease of Π: a softer step may pass the saddle and end on the other side.  The springs soften while steps are
-short, stiffen where a step fails, and vanish near the minimum.
+The springs of the first step are so stiff that no link turns farther than by the kick and with the drives.  No later
+step turns back behind a decrease of Π: a softer step may pass the saddle and end on the other side.  The springs soften
+while steps are short, stiffen where a step fails, and vanish near the minimum.
 
 Where both senses lead equally low, as at a symmetric bifurcation, the sense of m counts.  Several modes may soften at
 a single load: u has all of them in fixed parts.  Neither the mesh nor the order of assembly decides.
@@ -48,6 +48,9 @@ STIFFER = 4.0
 SOFTER = 0.5
 STIFFEST = 1e12
 """Largest strength of the springs over the first: beyond it nothing moves."""
+
+RIGID = 1e6
+"""Strength of the springs over the first, under which links turn with the drives alone."""
 
 NEAR = 0.05
 """Turn of a step, rad, after which a decreasing motion may end without springs."""
@@ -128,10 +131,13 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
     change *= KICK / np.abs(change[system.angles]).max()
     kicked = [replace(start, z=start.z + sense * change) for sense in (1.0, -1.0)]
     strength, energy = 2.0 * soft, potential(system, start)
+    # a drive ahead of the critical point turns links, however stiff the springs
+    driven = _step(system, start, RIGID * strength, acting, iterations)
+    longest = KICK + (_moved(system, start, driven.state) if driven is not None else 0.0)
     for _ in range(TRIES):
         steps = [(each, _step(system, each, strength, acting, iterations)) for each in kicked]
         ways = [(each, step.state) for each, step in steps if step is not None]
-        if ways and max(_moved(system, *way) for way in ways) <= KICK:
+        if ways and max(_moved(system, *way) for way in ways) <= longest:
             states = [state for _, state in ways]
             energies = [potential(system, state) for state in states]
             equal = SAME * abs(energy - min(energies)) + ROUND_OFF * abs(energy)

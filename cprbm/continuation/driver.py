@@ -17,7 +17,6 @@ bifurcation.  The stage chooses the end of the solve or a descent to a minimum. 
 choice of the stage a branch with two ways on ends, and others are passed only to a state near by.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
@@ -60,7 +59,7 @@ from cprbm.equilibrium import (
 )
 from cprbm.settings import Settings
 from cprbm_scene import Ending, Event, Loss
-from cprbm_scene.answer import Flags
+from cprbm_scene.answer import Array, Flags
 
 CAREFUL_TURN = 0.2
 """Largest turn in a step, rad, where no critical point may be passed."""
@@ -229,10 +228,13 @@ class Driver:
     def _note(self, way: Way, names: frozenset[str], closed: float, opened: float | None = None) -> None:
         """Add the contacts ``closed`` or ``opened`` at fractions of the way since the last state to the events."""
         before, self.touching = self.touching, names | self.drawn
-        names = self.touching
-        self.events += [Event(way.stage, name, "closes", way.value(closed)) for name in sorted(names - before)]
-        if opened is not None:
-            self.events += [Event(way.stage, name, "opens", way.value(opened)) for name in sorted(before - names)]
+        changes = ("closes", closed, self.touching - before), ("opens", opened, before - self.touching)
+        self.events += [
+            Event(way.stage, name, kind, way.value(at))
+            for kind, at, changing in changes
+            if at is not None
+            for name in sorted(changing)
+        ]
 
     def _changed(self, way: Way, t: float, change: Change, beyond: Beyond) -> list[Reached]:
         """Close or open a stop or contacts at the present state; the trail from there on.
@@ -298,8 +300,7 @@ class Driver:
         furthest = max(point.t, self.reached) + 10.0 * point.width
         for ahead in AHEAD:
             t = min(1.0, furthest + ahead * max(0.0, 1.0 - furthest))
-            descent = partial(descend, self.system, point.start, point.curvature, way.target(t), self.acting)
-            landed = self._landed(descent, point, beside=beyond is None)
+            landed = self._landed(point, way.target(t), beside=beyond is None)
             if landed is not None:
                 self.passed.append(passed(landed, energy_before(landed, way.change, t - point.t)))
                 # a contact that closes in the descent closes at the critical load
@@ -314,10 +315,11 @@ class Driver:
     def _sentence(self, way: Way, point: CriticalPoint) -> str:
         return f"{point.sentence} at {way.name} = {way.value(point.t):.6g}" if way.name else point.sentence
 
-    def _landed(self, descent: Callable[[int], Solved], point: CriticalPoint, *, beside: bool) -> Solved | None:
-        """The certified minimum of a descent; None without a minimum, or with a minimum too far away."""
+    def _landed(self, point: CriticalPoint, target: Array, *, beside: bool) -> Solved | None:
+        """The certified minimum of a descent under a target; None without a minimum, or with a minimum too far away."""
+        iterations = self.settings.iterations
         try:
-            landed = descent(self.settings.iterations)
+            landed = descend(self.system, point.start, point.curvature, target, self.acting, iterations)
         except NotConvergedError:
             return None
         self.spent += landed.iterations

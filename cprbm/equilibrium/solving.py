@@ -169,9 +169,8 @@ def row_derivatives(system: System, state: State) -> Array:
 def balanced_forces(solved: Solved, row: int) -> Array:
     """Changes (size,) of all unknowns in balance with a unit force of a repeated row; displacements vanish."""
     system = solved.system
-    load, weight = np.zeros(system.size), np.zeros(len(system.rows.constant))
-    weight[row] = 1.0
-    add_row_gradient(solved.state.z, system.rows, weight, load)
+    load = np.zeros(system.size)
+    add_row_gradient(solved.state.z, system.rows, np.eye(len(system.rows.constant))[row], load)
     balanced = -solved.response(load)
     balanced[system.rows.first + row] = 1.0
     return balanced

@@ -76,10 +76,8 @@ class System:
         """Points on which forces act: index of the displacement along x (points,), place as drawn (points, 2)."""
         m, nodes = self.mechanism, np.concatenate([self.nodes[:, 0], self.carried])
         index = np.concatenate([nodes, list(m.bodies.values())]).astype(np.int64)
-        origin = np.zeros((len(index), 2))
-        for k, name in enumerate(m.bodies):
-            origin[len(nodes) + k] = m.reference(name)
-        return index, origin
+        drawn = np.reshape([m.reference(name) for name in m.bodies], (-1, 2))
+        return index, np.concatenate([np.zeros((len(nodes), 2)), drawn])
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,8 @@ s        arc length of the cut, x its position on the deformed neutral line
 F_i, x_i forces on the part before the cut and their positions; M_i moments
 n, M     force and moment of the part beyond the cut
 α, θ     angle of the neutral line's tangent, angle of the section's normal
+F, h     normal force of a joint in a contact zone, distance of the joints
+M̃        moment of the pressure in a contact zone, M of the forces at joints
 =======  ====================================================================================
 
     n = −Σ F_i,    M = −Σ [(x_i − x) × F_i + M_i],    N = n·e(α),    Q = n·e′(α).
@@ -17,6 +19,11 @@ n, M     force and moment of the part beyond the cut
 Equilibrium gives n and M at every place, whatever the section, with all kinks and jumps.  A distributed load q adds
 q (c − a) and q ∫ x ds from the load's begin a to c, the nearer of the load's end and the cut.
 With shear α differs from θ by the angle of (1 + N/EA, Q/GA_s); in the other theories α = θ.
+
+In a contact zone a pressure F/h acts instead of the forces at joints, under which M has a kink at every joint.  A joint
+turns by the mean of the moment over one link, the same mean for both: M̃ = M + F h/12 at a joint.  In a zone other
+loads balance the pressure, so that M̃ is straight between two joints.  M̃ is M at the outermost forces, and at the end of
+the beam beside an outermost joint.
 """
 
 from collections.abc import Iterator
@@ -42,6 +49,9 @@ from cprbm_scene.statement import (
 )
 
 NO_FORCE = np.zeros(2)
+
+APART = 2
+"""Links between two closed joints of one zone: near an end of the zone the spline opens single joints."""
 
 
 def stop_moment(view: View, name: str) -> float:
@@ -218,12 +228,32 @@ class Statics:
                 span, integral = self._carried(load)
                 q = view.loads.get(name, 0.0) * units.length / units.force * np.array(unit_direction(load.direction))
                 n, M = n - span[:, None] * q, M - cross(integral - span[:, None] * places, q)
-        section = view.angles(beam)
-        angle = section
+        angle = section = view.angles(beam)
+        M = self._in_zones(beam, M)
         if view.scene.theory == "shear":
             N, Q = _turned(n, section)
             angle = section + np.arctan2(Q / samples.shearing, 1.0 + N / (samples.chain.section.young * samples.area))
         return Cuts(*_turned(n, angle), M, angle, section)
+
+    def _in_zones(self, beam: str, M: Array) -> Array:
+        """M̃ (k,) at the samples of a beam, from M (k,): of contacts with forces at joints of the beam."""
+        view, samples = self.view, self.view.samples[beam]
+        s, at, arcs, angles = samples.s, samples.nodes, samples.chain.arcs, view.angles(beam)[samples.nodes]
+        h, normals = arcs[2] - arcs[1], np.stack([-np.sin(angles), np.cos(angles)], axis=1)
+        for pair in view.solved.system.geometry.pairs:
+            if view.scene.contacts[pair.name].beams[0] == beam and samples.chain.corrected and not pair.itself:
+                found, turning = view.pressed[pair.name], M[at].copy()
+                joints = ~found.moves & found.on_first
+                zones = np.searchsorted(arcs, found.arcs[joints, 0] - 0.25 * h)
+                turning[zones] += h / 12.0 * (found.forces[joints, 0] * normals[zones]).sum(axis=1)
+                for zone in np.split(zones, np.flatnonzero(np.diff(zones) > APART) + 1):
+                    if len(zone) > 1:
+                        # a zone up to the first or last joint reaches to the end of the beam
+                        low, high = zone[0] - (zone[0] == 1), zone[-1] + (zone[-1] == len(arcs) - 2)
+                        values = np.concatenate([M[at][[low]], turning[low + 1 : high], M[at][[high]]])
+                        straight = np.interp(s, arcs[low : high + 1], values)
+                        M = np.where((s >= arcs[low]) & (s <= arcs[high]), straight, M)
+        return M
 
     def _carried(self, load: DistributedLoad) -> tuple[Array, Array]:
         """Length (k,) of a distributed load before the cuts, and the integral (k, 2) of the position there."""

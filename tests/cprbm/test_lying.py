@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm_scene import scene_from
-from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, drives_of
+from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data, drives_of
 from tests.references.lying import Lying, Strip
 
 # elements of one length where B has four for every five of A
@@ -188,7 +188,8 @@ def test_no_load_falls_between_a_point_and_a_length(load):
 
 @pytest.mark.parametrize("links", [40, 80])
 def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
-    # reference: a length a is free, with the deflection h = q a⁴/24 EI and the force q a/2 at the end (small slopes)
+    # reference: a length a is free, with the deflection h = q a⁴/24 EI, the force q a/2 at the end and the moment
+    # q a²/8 in the middle (small slopes); the strip on the floor is straight, and has no stress
     q, heights = 18.5 * RIGIDITY / LENGTH**3, np.array([0.002, 0.01]) * LENGTH
     floor = {"kind": "beam-half-plane", "beam": "beam", "body": "wall"}
     scene = scene_from(
@@ -200,7 +201,11 @@ def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
                 {"name": "lie", "steps": "P", "stations": [q]},
                 {"name": "lift", "steps": "h", "stations": heights.tolist()},
             ],
-            "probes": [{"of": "c", "quantity": "ends"}, {"of": "T", "quantity": "reaction"}],
+            "probes": [
+                {"of": "c", "quantity": "ends"},
+                {"of": "T", "quantity": "reaction"},
+                {"of": "beam", "quantity": "bending_stress", "points": 101},
+            ],
         }
     )
     answer = cprbm.answer(scene, cprbm.Settings(links=links))
@@ -209,3 +214,9 @@ def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
     lifted = [station.values for station in answer.stations[1:]]
     assert [values["c.ends"][1] for values in lifted] == pytest.approx(LENGTH - free, abs=0.05 * LENGTH / links)
     assert [values["T.reaction"][1] for values in lifted] == pytest.approx(0.5 * q * free, rel=1e-3)
+    for values, a in zip(lifted, free, strict=True):
+        stress, largest = np.abs(values["beam.bending_stress"]), q * a**2 / 8.0 * 0.5 * MODULUS * THICKNESS / RIGIDITY
+        assert stress.max() == pytest.approx(largest, rel=2e-3)
+        # the clamp takes a part of the first joint's force; the force at the end of the zone is spread over a few joints
+        flat = (np.arange(101) > 0) & (np.linspace(0.0, LENGTH, 101) < LENGTH - a - 8.0 * LENGTH / links)
+        assert stress[flat].max() < 1.6 / links**2 * largest

@@ -1,4 +1,4 @@
-"""A wrong CPRBM in rare scenes whose verdict rests on a special rule: the verdict must still say DIFFER."""
+"""Rare scenes in which a fault was silent: a wrong CPRBM that must still DIFFER, and critical points without a record."""
 
 from dataclasses import replace
 
@@ -8,7 +8,8 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, paired, solvers_of
 from comparisons.verdict import Word
-from cprbm_scene import Scene
+from cprbm_scene import Loss, Scene
+from fea_reference import Settings, answer
 from tests.scenes.rare_scenes import ASKED, scene
 from tests.together.planted import asked_of, stiffer, without_contact
 
@@ -46,3 +47,12 @@ def test_two_corners_at_one_place_carry_the_force_of_a_single_corner(solver):
         assert force == pytest.approx(single.values["flat.force"][0], rel=1e-4)
         energy = "scene.potential_energy"
         assert pair.values[energy][0] == pytest.approx(single.values[energy][0], rel=1e-5)
+
+
+@pytest.mark.parametrize("elements", [40, 80])
+def test_a_beam_does_not_pass_the_end_of_a_line_in_silence(elements):
+    # the limit of the CPRBM in shear: 0.8198 rad.  At 40 elements a step led round the end of the line without a
+    # contact, and at 80 a tighter penalty led off the end
+    (slip,) = answer(scene("end-past-a-line"), Settings(elements=elements, kinematics="shear")).critical
+    assert (slip.loss, slip.what) == (Loss.SLIP, "contact1")
+    assert slip.value == pytest.approx(0.8198, abs=3e-4)
