@@ -217,6 +217,6 @@ def test_a_heavy_strip_is_lifted_off_a_floor_at_its_end(links):
     for values, a in zip(lifted, free, strict=True):
         stress, largest = np.abs(values["beam.bending_stress"]), q * a**2 / 8.0 * 0.5 * MODULUS * THICKNESS / RIGIDITY
         assert stress.max() == pytest.approx(largest, rel=2e-3)
-        # the clamp takes a part of the first joint's force; the force at the end of the zone is spread over a few joints
+        # the clamp takes a part of the force of the first joint; a few joints carry the force at the end of the zone
         flat = (np.arange(101) > 0) & (np.linspace(0.0, LENGTH, 101) < LENGTH - a - 8.0 * LENGTH / links)
         assert stress[flat].max() < 1.6 / links**2 * largest

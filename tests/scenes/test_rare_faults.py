@@ -1,4 +1,4 @@
-"""Rare scenes in which a fault was silent: a wrong CPRBM that must still DIFFER, and critical points without a record."""
+"""Rare scenes with silent faults: a wrong CPRBM must still DIFFER, and critical points have a record."""
 
 from dataclasses import replace
 
@@ -51,8 +51,8 @@ def test_two_corners_at_one_place_carry_the_force_of_a_single_corner(solver):
 
 @pytest.mark.parametrize("elements", [40, 80])
 def test_a_beam_does_not_pass_the_end_of_a_line_in_silence(elements):
-    # the limit of the CPRBM in shear: 0.8198 rad.  At 40 elements a step led round the end of the line without a
+    # the limit of the CPRBM in shear: 0.8197 rad.  At 40 elements a step led round the end of the line without a
     # contact, and at 80 a tighter penalty led off the end
     (slip,) = answer(scene("end-past-a-line"), Settings(elements=elements, kinematics="shear")).critical
     assert (slip.loss, slip.what) == (Loss.SLIP, "contact1")
-    assert slip.value == pytest.approx(0.8198, abs=3e-4)
+    assert slip.value == pytest.approx(0.8197, abs=3e-4)
