@@ -124,7 +124,6 @@ def with_marks(curve: Curve, corners: list[int], bends: list[Ints]) -> Curve:
 
 def part_of(curve: Curve, run: Ints) -> Curve:
     """A run of pieces of a rigid curve without thickness, as a curve."""
-    whole = len(run) == curve.pieces
     spans = np.diff(curve.arcs)[run]
     return replace(
         curve,
@@ -136,13 +135,12 @@ def part_of(curve: Curve, run: Ints) -> Curve:
         lost=curve.lost[run],
         angles=curve.angles[run],
         corner=np.zeros(len(run), dtype=np.int64),
-        closed=curve.closed and whole,
+        closed=curve.closed and len(run) == curve.pieces,
     )
 
 
 def corner_curve(curve: Curve, piece: int) -> Curve:
     """Curve of a single point: the begin of a piece of a rigid curve."""
-    weights = curve.weights[[piece]].copy()
-    weights[:, :, 1:] = 0.0
     point = part_of(curve, np.array([piece]))
-    return replace(point, name=f"{curve.name}, corner {piece}", weights=weights, arcs=np.zeros(2), closed=False)
+    constant = point.weights * [1.0, 0.0, 0.0, 0.0]
+    return replace(point, name=f"{curve.name}, corner {piece}", weights=constant, arcs=np.zeros(2), closed=False)

@@ -106,8 +106,9 @@ class CurveArrays(NamedTuple):
     """Pieces of all curves, for the compiled kernels.
 
     ``first``, ``last`` (curves,) are the first and the last piece of a curve.  Per piece: ``stencil``; ``real``,
-    ``imaginary`` parts of the weights; ``arc`` at the begin and arc length ``span``; ``thickness`` at the begin and
-    the change ``thickening``; ``lost`` compliance; ``angle``; ``corner``.
+    ``imaginary`` parts of the weights; ``arc`` at the begin and arc length ``span``; length of the whole ``link``, the
+    unit of distances between places, of a rigid curve the ``span``; ``thickness`` at the begin and the change
+    ``thickening``; ``lost`` compliance; ``angle``; ``corner``.
     """
 
     first: Ints
@@ -119,6 +120,7 @@ class CurveArrays(NamedTuple):
     imaginary: Array
     arc: Array
     span: Array
+    link: Array
     thickness: Array
     thickening: Array
     lost: Array
@@ -128,23 +130,24 @@ class CurveArrays(NamedTuple):
 
 def curve_arrays(curves: Sequence[Curve]) -> CurveArrays:
     """Arrays of all curves, in the order of the curves."""
-    count = np.array([curve.pieces for curve in curves], dtype=np.int64)
-    every = [NO_PIECES, *curves]
-    weights = np.concatenate([curve.weights for curve in every])
+    count, every = np.array([curve.pieces for curve in curves], dtype=np.int64), [NO_PIECES, *curves]
+    angle = np.concatenate([curve.angles for curve in every])
+    span = np.concatenate([np.diff(curve.arcs) for curve in every])
     return CurveArrays(
         first=np.cumsum(count) - count,
         last=np.cumsum(count) - 1,
         is_point=np.array([curve.is_point for curve in curves], dtype=bool),
         closed=np.array([curve.closed for curve in curves], dtype=bool),
         stencil=np.concatenate([curve.stencil for curve in every]),
-        real=np.ascontiguousarray(weights.real),
-        imaginary=np.ascontiguousarray(weights.imag),
+        real=np.concatenate([curve.weights.real for curve in every]),
+        imaginary=np.concatenate([curve.weights.imag for curve in every]),
         arc=np.concatenate([curve.arcs[:-1] for curve in every]),
-        span=np.concatenate([np.diff(curve.arcs) for curve in every]),
+        span=span,
+        link=np.where(angle < 0, span, np.bincount(angle + 1, span, 1)[angle + 1]),
         thickness=np.concatenate([curve.half_thickness[:-1] for curve in every]),
         thickening=np.concatenate([np.diff(curve.half_thickness) for curve in every]),
         lost=np.concatenate([curve.lost for curve in every]),
-        angle=np.concatenate([curve.angles for curve in every]),
+        angle=angle,
         corner=np.concatenate([curve.corner for curve in every]),
     )
 
@@ -172,8 +175,8 @@ def beam_curve(m: Mechanism, beam: str, *, thick: bool) -> Curve:
 def _with_knots(chain: BeamChain) -> Array:
     """Arc lengths of the nodes, and of the corners of the thickness between nodes; the plain chain has nodes alone."""
     between = np.interp(chain.knots, chain.arcs, chain.section.thickness(chain.arcs))
-    missed = np.abs(chain.section.thickness(chain.knots) - between) > CLOSED * between
-    return np.union1d(chain.arcs, chain.knots[missed & chain.corrected])
+    missed = chain.corrected & (np.abs(chain.section.thickness(chain.knots) - between) > CLOSED * between)
+    return np.union1d(chain.arcs, chain.knots[missed])
 
 
 def _powers(offset: Array, scale: Array, size: int) -> Array:

@@ -163,7 +163,7 @@ def contact_measures(solved: Solved) -> tuple[float, float, float, float]:
     The last measure is the change of a contact force under a round-off of all closed gaps, over the largest force and
     at least 1.
 
-    Joints within a piece of a point contact, and the compliance that the chain lacks there, are no overlaps.  Places
+    Joints within a link of a point contact, and the compliance that the chain lacks there, are no overlaps.  Places
     with a shared force overlap by the sum of both gaps.
     """
     geometry, contacts = solved.system.geometry, solved.state.contacts

@@ -168,7 +168,7 @@ def _leaving_corners(geometry: Geometry, solved: Touched) -> tuple[Places, Flags
         trial = left_corner(geometry, z, places, k, contacts.sides, contacts.counters)
         mine = contacts.closed & (places.pair == places.pair[k]) & (np.arange(len(arcs)) != k)
         if trial is not None and np.all(
-            np.abs(arcs[mine] - arcs_of(geometry.arrays, trial)) > ISOLATED * geometry.arrays.span[trial.piece]
+            np.abs(arcs[mine] - arcs_of(geometry.arrays, trial)) > ISOLATED * geometry.arrays.link[trial.piece]
         ):
             replaced[k], created = True, joined(created, trial)
     return created, replaced
@@ -194,9 +194,9 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
 
 
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
-    """Contacts after moving places become joints again; the joints within a piece share the force."""
+    """Contacts after moving places become joints again; the joints within a link share the force."""
     places, closed = copied(contacts.places), contacts.closed.copy()
-    arcs, span, given_up = arcs_of(geometry.arrays, places), geometry.arrays.span[places.piece], set(contacts.given_up)
+    arcs, span, given_up = arcs_of(geometry.arrays, places), geometry.arrays.link[places.piece], set(contacts.given_up)
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
         share = 1.0 - np.abs(arcs - arcs[k]) / span[k]
@@ -223,7 +223,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
     heavier = runs[np.arange(len(runs)), np.argmax(forces, axis=1)]
     points, gaps, curvatures = points_at(z, curves, places, heavier, forces.sum(axis=1), contacts.counters)
     arcs, found = arcs_of(curves, places), arcs_of(curves, points)
-    overlap, span = -OVERLAP - beside_points(curves, places, closed)[1], curves.span[places.piece]
+    overlap, span = -OVERLAP - beside_points(curves, places, closed)[1], curves.link[places.piece]
     replaced = np.zeros(len(closed), dtype=bool)
     created = taken(places, replaced)
     for i in np.flatnonzero(
@@ -232,7 +232,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         best = heavier[i]
         # the joints of a run are neighbours
         if any((int(places.pair[k]), int(places.piece[k])) in contacts.given_up for k in runs[i]):
-            if closed[best] and gaps[i] < -OVERLAP and curvatures[i] * curves.span[points.piece[i]] > STEEPEST:
+            if closed[best] and gaps[i] < -OVERLAP and curvatures[i] * curves.link[points.piece[i]] > STEEPEST:
                 raise NotConvergedError("a contact's curves overlap between two joints")
             continue
         if curvatures[i] <= 0.0 or not is_movable(curves, geometry.sites, points, i):

@@ -3,7 +3,7 @@
 Every iteration moves the feet, opens pulling places, closes overlapping places, and solves the linear system of the
 closed places.  Where the set returns, the linearised problem chooses the set.  The first iteration keeps the set:
 under new targets it is the prediction along the path's tangent.  A moving place is an unknown; a closed moving place
-stands for the fixed places within a piece.
+stands for the fixed places within a link.
 
 **Linearised problem**, a linear complementarity problem in the contact forces.
 
@@ -273,7 +273,7 @@ def _choose_set(geometry: Geometry, linear: Linear, settling: Settling) -> None:
     follow_leaders(places, closed)
     arcs, joints = arcs_of(curves, places), closed & ~places.moves
     points = np.flatnonzero(closed & places.moves & ~on_edge(curves, places))
-    near = np.abs(arcs[joints, None] - arcs[points]) < ISOLATED * curves.span[places.piece[points]]
+    near = np.abs(arcs[joints, None] - arcs[points]) < ISOLATED * curves.link[places.piece[points]]
     if np.any(near & (places.pair[joints, None] == places.pair[points])):
         raise NotConvergedError("a point of contact becomes a length")
 

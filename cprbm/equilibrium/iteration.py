@@ -13,8 +13,11 @@ from cprbm_scene.answer import Array, Flags, Ints
 OVERLAP = 1e-12
 """Overlap, over the longest beam, from which an open place closes: round-off."""
 
+PULL = 1e-14
+"""Pull of a closed place, in EI/ℓ², up to which the place touches without force: round-off."""
+
 NEARBY = 4.0
-"""Pieces around a point contact in which the chain's curve misses the lost compliance."""
+"""Links around a point contact in which the chain's curve misses the lost compliance."""
 
 LONGEST_MOVE = 2.0
 """Largest change of a moving place in an iteration, pieces: joints find a place that is farther away."""
@@ -35,7 +38,7 @@ def change_set(
     own, gap = places.shares == 0, gaps.copy()
     for k in np.flatnonzero(~own):
         gap[k + places.shares[k]] += gaps[k]
-    opens = own & closed & ((places.force < 0.0) | beside)
+    opens = own & closed & ((places.force < -PULL) | beside)
     closes = own & allowed & ~waits & ~closed & (gap < -OVERLAP - depth)
     count = int(np.count_nonzero(opens | closes))
     if count > 1 and (most == 1 or (most > 1 and not np.any(closed))):
@@ -82,7 +85,7 @@ def closable(
 
 @compiled
 def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[Flags, Array]:  # pragma: no cover
-    """Places within a piece of a closed point contact, and the overlap of every pair's point contact.
+    """Places within a link of a closed point contact, and the overlap of every pair's point contact.
 
     Outside of the point the other places of the pair may overlap by as much without contact, corners only nearby.
     Closed point contacts stay closed beside each other, and two corners are two contacts.
@@ -95,10 +98,10 @@ def beside_points(curves: CurveArrays, places: Places, closed: Flags) -> tuple[F
             if places.pair[j] != places.pair[k] or (closed[j] and places.moves[j]):
                 continue
             corner, same = curves.angle[places.piece[j]] < 0, beam_place(curves, places, j)[0] == beam
-            pieces = abs(arcs[j] - arcs[k]) / curves.span[piece]
-            if not corner or (same and pieces < NEARBY):
+            links = abs(arcs[j] - arcs[k]) / curves.link[piece]
+            if not corner or (same and links < NEARBY):
                 depth[j] = max(depth[j], lost * places.force[k])
-            beside[j] |= same and pieces < 1.0 and not (corner and curves.angle[places.piece[k]] < 0)
+            beside[j] |= same and links < 1.0 and not (corner and curves.angle[places.piece[k]] < 0)
     return beside, depth
 
 

@@ -27,7 +27,7 @@ from cprbm.equilibrium.iteration import arcs_of
 from cprbm_scene.answer import Array, Flags, Ints
 
 NEIGHBOURS = 1.6
-"""Pieces between neighbouring joints: half links at a beam's end are neighbours too."""
+"""Links between neighbouring joints: half links at a beam's end are neighbours too."""
 
 RESTING = 1e-6
 """Last change of a place at the minimum of the gap, pieces."""
@@ -43,10 +43,10 @@ by τ³/12: the gap of nested arcs has a minimum in most links.
 """
 
 WITHIN = 0.5
-"""Gap, in pieces, of a joint with a possible contact beside the joint."""
+"""Gap, in links, of a joint with a possible contact beside the joint."""
 
 ISOLATED = 4
-"""Pieces around a moving place without other closed places of the pair."""
+"""Links around a moving place without other closed places of the pair."""
 
 LONGEST_RUN = 2
 """Longest run of closed neighbours for a point."""
@@ -61,7 +61,7 @@ def joints_of(curves: CurveArrays, places: Places, columns: Ints, pair: int) -> 
     own = (places.pair == pair) & (places.curve == columns[pair, 0]) & ~places.moves & (places.shares == 0)
     joints = np.flatnonzero(own & ~((places.curve == places.other) & (places.xi == 1.0)))
     arcs, beside = arcs_of(curves, places)[joints], np.zeros(joints.size, np.bool_)
-    beside[:-1] = arcs[1:] - arcs[:-1] < NEIGHBOURS * curves.span[places.piece[joints[:-1]]]
+    beside[:-1] = arcs[1:] - arcs[:-1] < NEIGHBOURS * curves.link[places.piece[joints[:-1]]]
     return joints, beside
 
 
@@ -72,7 +72,7 @@ def minima_of(
     """Open joints of a pair with the locally least gap, without a closed neighbour."""
     joints, beside = joints_of(curves, places, columns, pair)
     gap, free, apart = gaps[joints], ~closed[joints], ~beside[:-1]
-    least = free & (gap < WITHIN * curves.span[places.piece[joints]])
+    least = free & (gap < WITHIN * curves.link[places.piece[joints]])
     least[:-1] &= free[1:] & ((gap[:-1] <= gap[1:]) | apart)
     least[1:] &= free[:-1] & ((gap[1:] <= gap[:-1]) | apart)
     return joints[least]
@@ -90,7 +90,7 @@ def points_at(
     points.moves[:], points.force[:] = True, forces
     settle(z, curves, points, gaps, curvatures, counters, FINDING)
     found, pieces = arcs_of(curves, points), points.piece.copy()
-    missing = np.abs(found - arcs_of(curves, places)[joints]) > NEIGHBOURS * curves.span[pieces]
+    missing = np.abs(found - arcs_of(curves, places)[joints]) > NEIGHBOURS * curves.link[pieces]
     missing |= points.at_point & (curves.corner[points.foot] == CORNER)
     settle(z, curves, points, gaps, curvatures, counters, 1)
     moved = np.abs(arcs_of(curves, points) - found) > RESTING * curves.span[pieces]
@@ -98,7 +98,7 @@ def points_at(
         pieces[:, None] + np.array([-1, 0, 1]), curves.first[points.curve, None], curves.last[points.curve, None]
     )
     leans, turns = np.ptp(curves.thickening[near] / curves.span[near], axis=1), np.ptp(z[curves.angle[near]], axis=1)
-    flat = curvatures * curves.span[pieces] < turns * np.maximum(ALIKE, SPLINED * turns**2)
+    flat = curvatures * curves.link[pieces] < turns * np.maximum(ALIKE, SPLINED * turns**2)
     missing |= flat | (moved & (leans > LEANING))
     gaps[missing], curvatures[missing] = np.inf, 0.0
     return points, gaps, curvatures
@@ -126,7 +126,7 @@ def _is_crowded(curves: CurveArrays, places: Places, closed: Flags, k: int) -> b
     """True if another closed place of the pair is too near for an isolated point of contact beside a joint."""
     arcs, others = arcs_of(curves, places), closed & (places.pair == places.pair[k])
     others &= (places.curve == places.curve[k]) & (np.arange(closed.size) != k)
-    near = np.abs(arcs - arcs[k]) < (ISOLATED - NEIGHBOURS) * curves.span[places.piece[k]]
+    near = np.abs(arcs - arcs[k]) < (ISOLATED - NEIGHBOURS) * curves.link[places.piece[k]]
     return bool(np.any(others & near))
 
 
@@ -166,9 +166,9 @@ def given_up(
     gone, light = np.zeros((2, len(closed)), dtype=bool)
     moving, arcs = places.moves & (curves.angle[places.piece] >= 0), arcs_of(curves, places)
     for k in np.flatnonzero(moving).tolist():
-        apart, span = np.abs(arcs - arcs[k]), curves.span[places.piece[k]]
+        apart, link = np.abs(arcs - arcs[k]), curves.link[places.piece[k]]
         near = closed & ~places.moves & (places.pair == places.pair[k]) & (places.curve == places.curve[k])
-        near &= (span <= apart) & (apart < ISOLATED * span)
+        near &= (link <= apart) & (apart < ISOLATED * link)
         heavy = places.force[near].sum() > least * places.force[k]
         gone[k] = heavy or not (closed[k] and curvatures[k] > 0.0 and is_movable(curves, sites, places, k))
         light |= near & ~gone[k]
