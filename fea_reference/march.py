@@ -420,11 +420,11 @@ class March:
         gaps = zip(self.gaps(self.system), self.gaps(system), strict=True)
         return any(after < 0.0 <= before for before, after in gaps)
 
-    def _lost_contact(self, system: System) -> bool:
-        """True if ``system``, with other penalties, lies beyond a rigid body that presses now, or has slipped off."""
+    def _passed_rigid_body(self, system: System) -> bool:
+        """True if ``system``, with other penalties, lies beyond a rigid body or a corner that presses now."""
         rigid = (pair for pair in self.penalties if isinstance(pair, Rigid))
         passed = any(passed_through(self.model, pair, self.system.z, system.z) for pair in rigid)
-        return passed or self.slip_failure(system, "") is not None
+        return passed or any(slipped_off(self.model, touch, self.system.z, system.z) for touch in self.system.touches)
 
     def _predicted_step(self, load: int, step: float, rate: Array) -> Array:
         """Predicted motion (size,) for a ``step`` in λ: third order if the last step applies, else first order."""
@@ -691,8 +691,8 @@ class March:
         solved = self._equilibrium(looser, self.values, self.system.z, self.depths(), self.pushes())
         if not solved.converged or _too_deep(self.model, solved.system) or self._overlaps_more(solved.system):
             return False
-        near = self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
-        if near and not self._lost_contact(solved.system):
+        contact_lost = self._passed_rigid_body(solved.system) or self.slip_failure(solved.system, "") is not None
+        if self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION and not contact_lost:
             self.system, self.penalties, self.loosened = solved.system, looser, True
             self.exchange_beams()
             return True
@@ -824,7 +824,7 @@ class March:
                 and self.largest_motion(solved.system, self.system.z) <= _MAX_CORRECTION
                 and (all_positive(self.model, solved.system) or not self.is_minimum)
             )
-            if near and not self._lost_contact(solved.system):
+            if near and not self._passed_rigid_body(solved.system):
                 falls = self._penetration_exponents(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)

@@ -1,6 +1,7 @@
 """Several contacts on the way: what closes where, and whether the march arrives."""
 
 from collections import namedtuple
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import pytest
@@ -49,15 +50,19 @@ def test_of_three_gaps_the_first_to_close_is_found_though_another_seemed_to_be()
         second = 1.0 - value / 0.37 if value < 0.37 else -0.1 * (value - 0.37) / 0.63
         return [1.0 - value / 0.53, second, 2.3 - value]
 
+    @dataclass
+    class System:
+        z: float
+
     march = SimpleNamespace(
-        solve=lambda load, value, start: value,
-        gaps=gaps,
+        solve=lambda load, value, start: System(value),
+        system=System(0.0),
+        gaps=lambda system: gaps(system.z),
         open=[namedtuple("Pair", "scale")(0.043)] * 3,
         model=SimpleNamespace(stops=()),
         _path=lambda *way: lambda value: value,
-        _gaps_at=gaps,
     )
-    assert March._first_touch(march, 0, {0.0: 0.0, 1.0: 1.0})[0] == pytest.approx(0.37, abs=1e-9)
+    assert March._first_touch(march, 0, {0.0: System(0.0), 1.0: System(1.0)})[0] == pytest.approx(0.37, abs=1e-9)
 
 
 def test_where_a_contact_closes_is_not_a_matter_of_the_stations():
