@@ -94,14 +94,13 @@ def round_a_stiff_beam(between: tuple[str, str], load: float) -> Scene:
     return Scene.model_validate(plain)
 
 
-@pytest.mark.parametrize("between", [("beam", "arc"), ("arc", "beam")])
-def test_a_beam_wraps_round_a_stiff_beam_as_round_a_circle(between):
+def test_a_beam_wraps_round_a_stiff_beam_as_round_a_circle():
     """The closed form is for a rigid circle; the arc gives way by some 1e-5 of the tip's displacement."""
     load = 97.0
     exact = Wrapped(length=0.0973, radius=0.0711, thickness=0.00103, width=0.0097, youngs_modulus=2.07e11, force=load)
-    found = [solved(round_a_stiff_beam(between, load), n) for n in (40, 80)]
+    found = [solved(round_a_stiff_beam(("arc", "beam"), load), n) for n in (40, 80)]
     # Arc lengths on the arc's own neutral line are shorter.
-    share = 1.0 if between[0] == "beam" else (0.0711 - 0.002) / exact.neutral_radius
+    share = (0.0711 - 0.002) / exact.neutral_radius
     for got in found:
         assert got["T.displacement"] == pytest.approx(exact.displacement, rel=1e-4)
         assert got["contact.force"][0] == pytest.approx(np.hypot(*exact.contact_force), rel=5e-4)

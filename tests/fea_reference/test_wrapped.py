@@ -63,11 +63,6 @@ def test_every_error_falls_with_the_element(scene):
     assert (found[0] / found[-1] > 2.5**3).all()
 
 
-def test_a_finer_run_and_less_penetration_agree_with_the_closed_form_too(scene):
-    """What a comparison asks for beside a run with 20 elements."""
-    assert (errors(solved(scene, 40, penetration=1e-4 / 16)) < 5e-5).all()
-
-
 @pytest.mark.parametrize("kinematics", ["stretch", "shear"])
 def test_other_theories_are_even_in_the_elements(scene, kinematics):
     """The resultant of a stretching beam does not depend on how the elements' lengths compare with its thickness."""
