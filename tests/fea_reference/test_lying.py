@@ -27,7 +27,7 @@ def solved(scene, elements, penetration=1e-4):
 
 def test_a_curved_beam_is_pressed_flat():
     """Like the closed form, even in the elements, in equilibrium, and the same whichever beam is named first."""
-    runs = [solved(lying(("upper", "lower"), (LOAD,)), n, p) for n, p in ((20, 1e-4), (40, 1e-4), (80, 1e-4 / 16))]
+    runs = [solved(lying(("upper", "lower"), (LOAD,)), n, p) for n, p in ((20, 1e-4), (40, 1e-4 / 16))]
     forces, lasts = ([run[probe][-1] for run in runs] for probe in ("touch.force", "touch.ends"))
     for run in runs:
         assert run["U.reaction"] + run["V.reaction"] == pytest.approx([0.0, LOAD], abs=1e-8 * LOAD)
@@ -46,9 +46,9 @@ def test_a_curved_beam_is_pressed_flat():
         assert run["touch.force"][0] == pytest.approx(np.hypot(*exact.contact_force), rel=2e-4)
         assert run["touch.centre"][0] == pytest.approx(exact.contact_centre, rel=2e-4)
         assert run["touch.ends"][1] == pytest.approx(exact.lift_off[0], rel=1e-5)
-    other = solved(lying(("lower", "upper"), (LOAD,)), 40)
+    other = solved(lying(("lower", "upper"), (LOAD,)), 20)
     assert other["touch.ends"][1] == pytest.approx(exact.lift_off[1], rel=1e-5)
-    assert other["touch.force"] == pytest.approx(runs[1]["touch.force"], rel=1e-6)
+    assert other["touch.force"] == pytest.approx(runs[0]["touch.force"], rel=1e-6)
 
 
 def test_the_curvatures_agree_where_beams_lie_on_each_other():
