@@ -1,5 +1,6 @@
 """Where a zone of contact ends, against the closed form of the wrapped beam."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,19 @@ def ends(scene, **settings):
     got = answer(asked(scene), Settings(**{"kinematics": "bending", "elements": 80, **settings}))
     assert got.ending is Ending.COMPLETED, got.sentence
     return [station.values["contact.ends"] for station in got.stations]
+
+
+def test_a_wrap_ends_where_the_closed_form_says_to_second_order():
+    """An overlap would end a layer's width, a third of an element, beyond or before."""
+    loads = (5.0, 7.0, 11.0)
+    exact = [replace(EXACT, force=load).wrap_length for load in loads]
+    errors = []
+    for n in (20, 40, 80, 160):
+        found = ends(on_circle(loads), elements=n)
+        assert all(first == 0.0 for first, _ in found)
+        errors.append(np.abs([last for _, last in found] - np.array(exact)).max())
+    assert errors[0] < 1e-3
+    assert np.log2(errors[0] / errors[-1]) / 3 > 1.8
 
 
 @pytest.mark.parametrize("kinematics", ["bending", "stretch", "shear"])

@@ -1,4 +1,4 @@
-"""Every fault, in both solvers, on every built-in case with a place for the fault: no comparison says AGREE.
+"""Every fault, in a solver or in each in turn, on built-in cases with a place for the fault: no comparison says AGREE.
 
 The content of a scene, never the name, picks the cases. The faults:
 
@@ -40,7 +40,7 @@ from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from tests.together.planted import remembered, stiffer, without_contact
 
-CHOICES = Choices(links=44, elements=20).within("bending")  # of 40 links three grids of `five-bar` show order 1.4
+CHOICES = Choices(links=44, elements=20).within("bending")
 FIRST_LOOK = Choices(links=14)
 SOME = 0.25  # of a contact's largest force
 REAL: dict[str, Solver] = {"cprbm": cprbm_answer, "fea": fea_answer}
