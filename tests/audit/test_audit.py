@@ -15,7 +15,7 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from comparisons.audit import audit
-from cprbm_scene import Scene, read, scene_from
+from cprbm_scene import read, scene_from
 from tests.audit.faults import FAULTS
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 from tests.scenes.rare_scenes import FOLDER
@@ -26,7 +26,8 @@ SOLVERS = {
     "shear": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=20, kinematics="shear")),
     "bending": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=20, kinematics="bending")),
 }
-CASES = [name for name in cases.names() if isinstance(cases.asked(name), Scene)]
+CASES = ("hinge", "platform", "rolled", "stack", "tapered", "wrapped")
+"""A case for every kind of contact; the word AGREE of tests.together.test_faults_everywhere audits all cases."""
 EACH = pytest.mark.parametrize("solver", ["cprbm", "shear"])
 
 
@@ -60,10 +61,10 @@ def test_right_answers_stay_quiet(case, solver):
 
 PLANTED = [
     (case, fault, ("cprbm", "shear")[(row + column) % 2])
-    for row, case in enumerate(CASES)
+    for row, case in enumerate(CASES[1:])
     for column, fault in enumerate(FAULTS)
 ]
-"""Every fault in every case, in the answers of both solvers in turn."""
+"""Every fault in the cases whose audit is short, in the answers of both solvers in turn."""
 
 
 @pytest.mark.parametrize(("case", "fault", "solver"), PLANTED)

@@ -24,7 +24,7 @@ from tests.comparisons.killed import NAMES, QUESTION
 from tests.verdict.made_up import MadeUp
 
 ROOT = Path(__file__).parents[2]
-KILLS = 13
+KILLS = 7
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 

@@ -19,9 +19,28 @@ from comparisons.logs import PACKAGES, RUNS, level, steps_from
 ROOT = Path(__file__).parents[2]
 
 
-def _on_a_terminal(*arguments):
-    """Exit code, standard output in a pipe, and the text on a terminal at standard error."""
-    program = "import sys; from comparisons.cli.main import run; sys.exit(run(sys.argv[1:]))"
+ASKED = {
+    "solve": ["solve", "hinge", "-n", "13"],
+    "compare": ["compare", "offset", "tapered", "-n", "20", "--elements", "20", "--no-exact"],
+    "sentences": ["solve", "hinge", "-n", "13", "-v", "--quiet"],
+}
+PROGRAM = f"""
+import sys
+from comparisons.cli.main import run
+
+for asked in {list(ASKED.values())}:
+    code = run(asked)
+    for stream in (sys.stdout, sys.stderr):
+        print(f"== ended with {{code}} ==", file=stream, flush=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def on_a_terminal():
+    """Exit code, standard output in a pipe, and the text on a terminal at standard error, by name of the command.
+
+    One process runs all commands, since a process loads all modules anew.
+    """
     try:
         mine, its = pty.openpty()
     except OSError as error:
@@ -29,7 +48,7 @@ def _on_a_terminal(*arguments):
     environment = os.environ | {"PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "100", "OMP_NUM_THREADS": "1"}
     environment["NUMBA_DISABLE_JIT"] = "1"  # with few links, machine code takes longer to load
     process = subprocess.Popen(
-        [sys.executable, "-c", program, *arguments], stdout=subprocess.PIPE, stderr=its, env=environment, cwd=ROOT
+        [sys.executable, "-c", PROGRAM], stdout=subprocess.PIPE, stderr=its, env=environment, cwd=ROOT
     )
     os.close(its)
     seen = b""
@@ -44,11 +63,17 @@ def _on_a_terminal(*arguments):
     os.close(mine)
     out = process.stdout.read().decode()
     process.stdout.close()
-    return process.wait(), out, seen.decode()
+    assert process.wait() == 0, seen.decode()
+    ends = re.compile(r"== ended with (\d+) ==\r?\n")
+    (said, codes), (shown, again) = ((ends.split(text)[::2], ends.findall(text)) for text in (out, seen.decode()))
+    assert codes == again
+    return {name: (int(code), *texts) for name, code, *texts in zip(ASKED, codes, said, shown, strict=False)}
 
 
-def test_on_a_terminal_a_bar_goes_to_the_end_with_the_time_that_remains_and_the_tables_go_where_they_are_sent():
-    code, out, seen = _on_a_terminal("solve", "hinge", "-n", "13")
+def test_on_a_terminal_a_bar_goes_to_the_end_with_the_time_that_remains_and_the_tables_go_where_they_are_sent(
+    on_a_terminal,
+):
+    code, out, seen = on_a_terminal["solve"]
     assert code == 0
     parts = [int(part) for part in re.findall(r"(\d+)%", seen)]
     # the hinge has ten stations
@@ -60,16 +85,16 @@ def test_on_a_terminal_a_bar_goes_to_the_end_with_the_time_that_remains_and_the_
     assert "solving" not in out
 
 
-def test_on_a_terminal_a_comparison_says_the_number_of_the_case():
-    code, out, seen = _on_a_terminal("compare", "offset", "tapered", "-n", "20", "--elements", "20", "--no-exact")
+def test_on_a_terminal_a_comparison_says_the_number_of_the_case(on_a_terminal):
+    code, out, seen = on_a_terminal["compare"]
     assert code == 0
     assert "case 1 of 2" in seen
     assert re.search(r"case 2 of 2, about \d+ s left", seen)
     assert "Summary" in out
 
 
-def test_sentences_stand_in_the_bar_s_place():
-    code, out, seen = _on_a_terminal("solve", "hinge", "-n", "13", "-v", "--quiet")
+def test_sentences_stand_in_the_bar_s_place(on_a_terminal):
+    code, out, seen = on_a_terminal["sentences"]
     assert (code, out) == (0, "")
     lines = seen.splitlines()
     assert len(lines) == 10

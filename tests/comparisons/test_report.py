@@ -338,16 +338,21 @@ def comparison():
 
 
 @pytest.fixture(scope="module")
-def put(comparison, tmp_path_factory):
+def drawn(comparison):
+    """All figures of the comparison, drawn once for the tests below."""
+    return page.figures_of(comparison)
+
+
+@pytest.fixture(scope="module")
+def put(comparison, drawn, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report") / "new" / "folder"
-    figures = page.figures_of(comparison)
     page.put_case(folder, comparison)
-    page.put_page(folder, page.report_page([page.case_chapter(comparison, figures)]))
+    page.put_page(folder, page.report_page([page.case_chapter(comparison, drawn)]))
     return folder
 
 
 @pytest.mark.usefixtures("printed")
-def test_the_folder_of_compare_holds_everything_and_figures_carry_no_date(put, comparison):
+def test_the_folder_of_compare_holds_everything_and_figures_carry_no_date(put, drawn):
     found = {str(path.relative_to(put)) for path in put.rglob("*") if path.is_file()}
     names = ("shapes", "stress", "path-M", "contact-forces")
     figures = {f"hinge/{name}.{kind}" for name in names for kind in ("svg", "png")}
@@ -358,7 +363,7 @@ def test_the_folder_of_compare_holds_everything_and_figures_carry_no_date(put, c
     answers = read_answers(put / "hinge" / "answers.json.gz")
     assert len(answers) == 8
     assert {"cprbm paper", "cprbm shear"} <= answers.keys()
-    for figure in page.figures_of(comparison):
+    for figure in drawn:
         assert (put / "hinge" / f"{figure.name}.svg").read_bytes() == figure.svg
         assert (put / "hinge" / f"{figure.name}.png").read_bytes() == figure.png
         assert b"<dc:date>" not in figure.svg
@@ -389,9 +394,9 @@ def test_a_case_that_did_not_complete_has_a_chapter_too(right):
     assert "UNDECIDED" in page.html(page.report_page([chapter]))
 
 
-def test_a_percentage_stays_on_the_line_of_its_number(comparison):
+def test_a_percentage_stays_on_the_line_of_its_number(comparison, drawn):
     """The texts that fold: paragraphs, captions of tables and figures, and long cells."""
-    text = page.html(page.report_page([page.case_chapter(comparison, page.figures_of(comparison))]))
+    text = page.html(page.report_page([page.case_chapter(comparison, drawn)]))
     folding = re.findall(
         r'<(?:p|caption|figcaption|td class="[^"]*long)\b[^>]*>.*?</(?:p|caption|figcaption|td)>', text, re.DOTALL
     )

@@ -72,9 +72,9 @@ def test_a_tip_slides_along_a_beam_whose_further_part_it_turns_its_back_on():
     assert found[-1]["tip.rotation"][0] < -1.4
 
 
-@pytest.mark.parametrize(  # every pair of two of the three
+@pytest.mark.parametrize(
     ("end", "thick", "links"),
-    [((0.45, -0.6), False, 20), ((0.45, -0.6), True, 37), ((0.1, -0.5), False, 37), ((0.1, -0.5), True, 20)],
+    [((0.45, -0.6), True, 37), ((0.1, -0.5), False, 20)],
 )
 def test_a_beam_is_drawn_over_the_root_of_another_that_stands_between_its_arms(end, thick, links):
     # what hangs on the far side has come there round the root, and touches nothing else

@@ -65,10 +65,9 @@ def largest_weight():
     return -found.fun
 
 
-@pytest.mark.parametrize("links", [20, 40])
-def test_the_branch_ends_at_the_largest_weight(links, largest_weight):
+def test_the_branch_ends_at_the_largest_weight(largest_weight):
     # reference: the shooting above; beyond it two joints on the nose hold the slider like a valley, at any weight
-    answer = cprbm.answer(scene_of(press=[5.0, 30.0, 34.0]), cprbm.Settings(links=links))
+    answer = cprbm.answer(scene_of(press=[5.0, 30.0, 34.0]), cprbm.Settings(links=20))
     (end,) = answer.critical
     assert answer.ending is Ending.BRANCH_ENDS
     assert end.loss is Loss.FOLD

@@ -80,7 +80,7 @@ def scene_or_error(data):
 
 @pytest.mark.parametrize("k", range(len(SCENES)), ids=["arcs", "drives", "circle"])
 def test_random_edits(k):
-    @settings(max_examples=120, deadline=None, derandomize=True)
+    @settings(max_examples=60, deadline=None, derandomize=True)
     @given(
         st.lists(st.tuples(st.sampled_from(PLACES[k]), st.sampled_from(["set", "drop", "rename"]), VALUES), max_size=3)
     )
@@ -90,7 +90,7 @@ def test_random_edits(k):
             change(data, path, action, value)
         scene_or_error(data)
 
-    @settings(max_examples=80, deadline=None, derandomize=True)
+    @settings(max_examples=40, deadline=None, derandomize=True)
     @given(st.lists(st.tuples(st.sampled_from(VECTORS[k]), NUMBERS), min_size=1, max_size=4))
     def with_numbers(edits):
         data = copy.deepcopy(SCENES[k])
@@ -102,14 +102,14 @@ def test_random_edits(k):
     with_numbers()
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=80, deadline=None, derandomize=True)
 @given(center=st.lists(NUMBERS, min_size=2, max_size=2), radius=NUMBERS, thick=st.booleans())
 def test_a_wrong_circle_is_a_mistake_of_the_circle(center, radius, thick):
     circle = CIRCULAR["contacts"]["touch"] | {"center": center, "radius": radius, "thick": thick}
     assert all(key.startswith("contacts.touch") for key in mistakes(("contacts/touch", circle), base=CIRCULAR))
 
 
-@settings(max_examples=250, deadline=None, derandomize=True)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(
     axis=st.sampled_from(["x", "y"]),
     coefficients=st.lists(st.one_of(NUMBERS, st.just(math.inf)), max_size=24),

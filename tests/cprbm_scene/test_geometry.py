@@ -163,7 +163,7 @@ def test_a_spline_meets_its_points_with_one_tangent_and_one_curvature():
     assert shape.largest_curvature == pytest.approx(np.max(shape.curvature(fine)), rel=1e-4)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=30, deadline=None, derandomize=True)
 @given(offset=st.floats(2.1, 4.0), towards=st.floats(0.0, 6.28), radius=st.floats(0.2, 1.0))
 def test_the_distance_of_two_circles_is_that_of_their_centres_less_the_radii(offset, towards, radius):
     """Nearly full circles with opposite openings."""
@@ -177,7 +177,7 @@ def test_the_distance_of_two_circles_is_that_of_their_centres_less_the_radii(off
     assert apart == pytest.approx(offset - 1.0 - radius, abs=1e-8)
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=50, deadline=None, derandomize=True)
 @given(
     x=st.floats(-3, 3),
     y=st.floats(-3, 3),
@@ -195,7 +195,7 @@ def test_the_distance_of_a_point_is_the_least_over_samples(x, y, first, turn, di
         assert sampled - length / 8000 - 1e-12 <= distance_to(curve, (x, y)) <= sampled + 1e-12
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=50, deadline=None, derandomize=True)
 @given(st.lists(st.floats(-40.0, 40.0), min_size=3, max_size=7), st.floats(0.01, 1.0))
 def test_no_polynomial_overlaps_itself(coefficients, share):
     """The thickest beam of any polynomial: places nearer than the thickness are neighbours along the beam."""

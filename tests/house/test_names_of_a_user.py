@@ -35,23 +35,11 @@ def _run(command, folder, environment=None):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
 
 
-def test_the_program_solves(folder):
-    done = _run([PROGRAM, "solve", "hinge", "-n", "10"], folder, INTERPRETED)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "BD.rotation" in done.stdout
-
-
 def test_the_program_shares_its_work_among_processes(folder):
     command = [PROGRAM, "compare", "tapered", "-n", "10", "--elements", "10", "--quiet"]
     done = _run(command, folder, INTERPRETED)
     assert done.returncode in (0, 3), done.stderr
     assert "user's own" not in done.stderr
-
-
-def test_the_tools_of_a_checkout_run(folder):
-    done = _run([PROGRAM, "robustness", "--replay", SCENE, "--quiet"], folder)
-    assert done.returncode in (0, 3), done.stderr
-    assert done.stderr == ""
 
 
 def test_the_tools_of_a_checkout_run_where_the_user_s_folder_comes_first_on_the_path(folder):

@@ -40,7 +40,7 @@ radius = "= rho - t/2"
 [[stages]]
 name = "load"
 steps = "F"
-stations = [1.5, 3.0]
+stations = [3.0]
 [[probes]]
 of = "T"
 quantity = "displacement"

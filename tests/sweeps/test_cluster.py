@@ -63,41 +63,40 @@ def swept(scene, out, place, *options, solvers=None):
     return run(["sweep", str(scene), "-n", "6", "--quiet", "--out", str(out), "--on", place, *options], solvers)
 
 
-GRID = ("--vary", "t=1.6mm..2.4mm:5", "--vary", "L=90..110:2")
+GRID = ("--vary", "t=1.6mm..2.4mm:3", "--vary", "L=90..110:2")
 
 
 @pytest.fixture(scope="module")
 def serial(scene, tmp_path_factory):
-    """Table of 10 points from one process."""
+    """Table of 6 points from one process."""
     folder = tmp_path_factory.mktemp("serial")
     assert swept(scene, folder, "local:1", *GRID) == 0
     rows = table(folder)
-    assert len(rows) == 10 * 2 * 2
+    assert len(rows) == 6 * 2 * 2
     return rows
 
 
-@pytest.mark.parametrize("place", ["local:2", "dask"])
-def test_all_places_give_the_table_of_one_process(scene, tmp_path, cluster, serial, place):
-    assert swept(scene, tmp_path, cluster[0] if place == "dask" else place, *GRID) == 0
+def test_a_cluster_gives_the_table_of_one_process(scene, tmp_path, cluster, serial):
+    assert swept(scene, tmp_path, cluster[0], *GRID) == 0
     assert table(tmp_path) == serial
 
 
 @pytest.mark.parametrize("worker", [False, True], ids=["child", "worker"])
 def test_a_poisoned_point_is_a_row_and_costs_at_most_four_further_executions(scene, tmp_path, cluster, worker):
-    """15 points; at a point the child dies, or its worker with the child."""
+    """6 points; at a point the child dies, or its worker with the child."""
     marks = tmp_path / "marks"
-    vary = ("--vary", "t=1.6mm..2.4mm:5", "--vary", "L=90..110:3")
+    vary = ("--vary", "t=1.6mm..2.4mm:3", "--vary", "L=90..110:2")
     text = scene.read_text("utf-8").replace('thickness = "= t"', 'thickness = "= t + (L - 90)*1e-4"')
     (tmp_path / "scene.toml").write_text(text, "utf-8")
     planted = Solvers(cprbm=Poisoned(str(marks), worker))
     assert swept(tmp_path / "scene.toml", tmp_path / "s", cluster[0], *vary, solvers=planted) == 1
     rows = table(tmp_path / "s", "last.csv")
-    assert [row["point"] for row in rows] == [str(number + 1) for number in range(15)]
+    assert [row["point"] for row in rows] == [str(number + 1) for number in range(6)]
     assert [row["ending"] for row in rows if row["ending"] != "COMPLETED"] == ["CRASHED"]
     executions = marks.read_text().split()
     assert 2 <= executions.count("2.0") <= 5
     if not worker:  # a worker that dies takes finished results with it
-        assert len(executions) == 15 + 1
+        assert len(executions) == 6 + 1
 
 
 def test_a_killed_worker_loses_nothing(scene, tmp_path, cluster, serial):
@@ -105,7 +104,7 @@ def test_a_killed_worker_loses_nothing(scene, tmp_path, cluster, serial):
     journal = tmp_path / "s" / "outcomes.jsonl"
 
     def kill():
-        while not journal.exists() or journal.read_bytes().count(b"\n") < 4:
+        while not journal.exists() or journal.read_bytes().count(b"\n") < 2:
             time.sleep(0.01)
         os.killpg(cluster[1][1].pid, signal.SIGKILL)
 

@@ -124,7 +124,7 @@ def test_failing_points_are_counted(scene, tmp_path):
         (["--limits", "LIMITS"], "limits[0].probe"),
         (["--limits", "absent.toml"], "File 'absent.toml' does not exist"),
         (["--limits", "GOAL"], "limits: found nothing; allowed: [[limits]] with a probe"),
-        (["--on", "remote"], "local:N"),
+        (["--on", "remote", "--samples", "16"], "local:N"),
         (["--samples", "16", "--set", "t=2.99mm"], "without a valid scene"),
     ],
 )

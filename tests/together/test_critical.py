@@ -170,8 +170,8 @@ def test_a_column_just_before_its_critical_load_is_reached(solve, within):
 @pytest.mark.parametrize(
     ("solver", "settings"),
     [
-        (cprbm.answer, [cprbm.Settings(links=n) for n in (20, 40, 60, 80)]),
-        (fea_reference.answer, [fea_reference.Settings(elements=n) for n in (40, 80, 160)]),
+        (cprbm.answer, [cprbm.Settings(links=n) for n in (20, 60)]),
+        (fea_reference.answer, [fea_reference.Settings(elements=n) for n in (40, 160)]),
     ],
     ids=["cprbm", "fea"],
 )
@@ -189,8 +189,8 @@ def test_a_column_between_pegs_leans_to_one_side_on_every_mesh(solver, settings,
 @pytest.mark.parametrize(
     ("solver", "settings"),
     [
-        (cprbm.answer, [cprbm.Settings(links=n) for n in (20, 30, 40, 50)]),
-        (fea_reference.answer, [fea_reference.Settings(elements=n) for n in (40, 60)]),
+        (cprbm.answer, [cprbm.Settings(links=n) for n in (20, 50)]),
+        (fea_reference.answer, [fea_reference.Settings(elements=40)]),
     ],
     ids=["cprbm", "fea"],
 )
@@ -252,7 +252,7 @@ def test_a_dome_under_a_plunger_leans_aside_and_comes_back():
     assert forces == pytest.approx(expected, rel=1e-3, abs=1e-9)
 
 
-@pytest.mark.parametrize("elements", [80, 91, 160])
+@pytest.mark.parametrize("elements", [91, 160])
 def test_a_frame_that_sways_bifurcates(elements):
     """Both guided columns of a frame carry π² EI/L² (Euler); round-off near the load makes no fold of it.
 

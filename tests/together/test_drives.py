@@ -72,6 +72,7 @@ def test_units_and_natural_scales_of_what_stages_step(scene):
     assert natural == pytest.approx([ell, 1.0, EI / ell**2], rel=1e-12)
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_curves_against_different_loads_are_figures_of_their_own(scene):
     found = compare(paired(scene, Choices(kinematics="bending", links=8, elements=8), Solvers()))
     names = [figure.name for figure in curves_of(found)]

@@ -102,7 +102,7 @@ def test_stretch_and_shear_of_the_most_slender_beam_are_nothing(kinematics):
         assert station.values["round.force"][0] == pytest.approx(float(np.hypot(*truth.contact_force)), rel=2e-5)
 
 
-@pytest.mark.parametrize(("gap", "slope"), [(1e-6, 1e-4), (1e-6, -1e-7), (1.3e-6, 0.0)])
+@pytest.mark.parametrize(("gap", "slope"), [(1e-6, 1e-4), (1e-6, -1e-7)])
 def test_beams_that_are_parallel_but_for_round_off_of_a_drawing(gap, slope):
     # references: where only the ends touch, the room exact; pressed flat on each other, the other solver.  What presses
     # beside the common root each mesh shares out otherwise: its moment about the root is what converges

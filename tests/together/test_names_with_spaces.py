@@ -77,6 +77,7 @@ SIZES = ["-n", "8", "--elements", "8"]
 
 
 @pytest.mark.usefixtures("unprinted")
+@pytest.mark.usefixtures("unprinted")
 def test_a_report_has_the_numbers_of_the_scene_without_spaces(files, tmp_path, capsys):
     rows = []
     for number, path in enumerate(files):
@@ -121,6 +122,7 @@ def test_commands_take_names_with_spaces(files, tmp_path, capsys):
     capsys.readouterr()
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_sweep_has_columns_with_spaces(files, tmp_path, monkeypatch):
     monkeypatch.setattr(outcome, "call_limited", lambda seconds, call, *arguments: call(*arguments))
     out = tmp_path / "all points"

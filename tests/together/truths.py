@@ -18,10 +18,9 @@ from comparisons.geometry import length, points
 from cprbm_scene import Answer, Certificate, Ending, Probe, Scene, Shape, StationAnswer, scene_from
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from tests.references import hinge, three_cantilevers, two_cantilevers
+from tests.references import hinge, two_cantilevers
 from tests.references.tapered import guided
 from tests.references.wrapped import Wrapped
-from tests.together import test_stacked
 
 Truth = Callable[[Probe, float], object]
 """A probe's true value at a station, empty where a contact is open."""
@@ -100,7 +99,6 @@ def hinge_truth(solution: hinge.HingeSolution, closing: float, probe: str, arc: 
 
 
 PAPER_HINGE = hinge.PAPER
-OTHER_HINGE = dataclasses.replace(hinge.PAPER, radius=0.0287, yc=0.0287 + 0.0017, thickness=0.0023)
 
 
 def wrapped_truth(probe: str, load: float) -> object:
@@ -203,31 +201,5 @@ def of_two_cantilevers() -> tuple[Scene, Solver]:
             "U.reaction_moment": [-found.upper_moment * EI / unit],
             "V.reaction_moment": [-found.lower_moment * EI / unit],
         }[probe.name]
-
-    return scene, told_by(truth)
-
-
-def of_three_cantilevers() -> tuple[Scene, Solver]:
-    """Two contacts, one beam in both."""
-    stack, unit, EI = test_stacked.STACK, test_stacked.L, test_stacked.EI
-    scene = test_stacked.stacked()
-    loads = tuple(share * stack.force * EI / unit**2 for share in (0.25, 0.5, 0.75, 1.0))
-    stage = scene.stages[0].model_copy(update={"stations": loads})
-    scene = scene.model_copy(update={"stages": (stage,)})
-
-    @lru_cache
-    def solved(force: float):
-        return three_cantilevers.solve(dataclasses.replace(stack, force=force * unit**2 / EI))
-
-    def truth(probe: Probe, force: float) -> object:
-        found = solved(force)
-        moments = dict(zip("UVW", found.moments, strict=True))
-        return {
-            "tip.displacement": lambda: unit * (found.tip - [1.0, stack.gap]),
-            "end.rotation": lambda: [found.rotation],
-            "first.force": lambda: [found.forces[0] * EI / unit**2],
-            "second.force": lambda: [found.forces[1] * EI / unit**2],
-            **{f"{name}.reaction_moment": (lambda m=m: [-m * EI / unit]) for name, m in moments.items()},
-        }[probe.name]()
 
     return scene, told_by(truth)

@@ -200,6 +200,7 @@ def measured(hinge, exact):
     return study.with_case(study.Calibration(), hinge, solvers, sizes=((17, 40), (40, 80)))
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_the_study_says_whose_statements_hold(hinge):
     found = result_of(measured(hinge, EXACT))
     (case,) = json.loads(text_of(found.data))["cases"]
@@ -217,6 +218,7 @@ def test_the_study_says_whose_statements_hold(hinge):
     assert silent.sentences == ("hinge: an exact answer is known for no station. It is made up.",)
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_the_study_is_a_command(monkeypatch, capsys, hinge, tmp_path):
     monkeypatch.setattr(cases, "scenes", lambda: ("hinge",))
     monkeypatch.setattr(cases, "opened", lambda name: hinge)

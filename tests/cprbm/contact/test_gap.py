@@ -225,7 +225,7 @@ def least_point(seed, between):
 def test_exchanged_beams_have_the_same_least_gap():
     """The minimum of λ is the same from either beam: thickness and lost compliance count alike at place and foot."""
     compared = 0
-    for seed in range(8):
+    for seed in range(5):
         both = [least_point(seed, between) for between in (("upper", "lower"), ("lower", "upper"))]
         if None not in both:
             np.testing.assert_allclose(both[0], both[1], rtol=1e-9, atol=1e-11)

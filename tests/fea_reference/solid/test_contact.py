@@ -97,10 +97,9 @@ def test_two_bars_press_each_other_with_opposite_forces():
     assert total == pytest.approx(-0.31 * 0.5 * 0.3, rel=1e-9)
 
 
-@pytest.mark.parametrize("turned", [False, True])
-def test_a_free_end_presses_into_another_beams_side(turned):
+def test_a_free_end_presses_into_another_beams_side():
     # of two cantilevers the upper, shorter one is loaded evenly: its tip comes down on the lower one's side.  Beam
-    # tables: q a⁴/8 − R a³/3 = E I g + R a³/3.  Whichever is named first, it is the end that presses
+    # tables: q a⁴/8 − R a³/3 = E I g + R a³/3
     a, thickness, gap, q = 0.19, 0.004, 0.0007, 0.37
     data = bar(straight(a), thickness, probes=PROBES[3:]).model_dump(mode="json", exclude={"file"}, exclude_none=True)
     data["bodies"] = {"ground": {"motion": "fixed", "points": {}}}
@@ -115,7 +114,7 @@ def test_a_free_end_presses_into_another_beams_side(turned):
     del data["beams"]["beam"]
     data["loads"] = {"P": {"kind": "distributed", "beam": "high", "direction": [0.0, -1.0]}}
     data["stages"][0]["stations"] = [q]
-    data["contacts"] = {"tip": {"kind": "beam-beam", "between": ["high", "low"] if turned else ["low", "high"]}}
+    data["contacts"] = {"tip": {"kind": "beam-beam", "between": ["high", "low"]}}
     data["probes"] = [{"of": "tip", "quantity": each} for each in ("force", "centre")]
     data["probes"] += [{"of": "low_root", "quantity": "reaction"}]
     found = solid.answer(scene_from(data), solid.Settings(elements=14, across=1))
