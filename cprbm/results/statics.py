@@ -50,8 +50,9 @@ from cprbm_scene.statement import (
 
 NO_FORCE = np.zeros(2)
 
-APART = 2
-"""Links between two closed joints of one zone: near an end of the zone the spline opens single joints."""
+APART, SHORT = 2, 4
+"""Links between two closed joints of one zone, since near an end of the zone the spline opens single joints; closed
+joints of a short zone, such as beside an own pin, in which the pressure changes from joint to joint."""
 
 
 def stop_moment(view: View, name: str) -> float:
@@ -247,7 +248,7 @@ class Statics:
                 zones = np.searchsorted(arcs, found.arcs[joints, 0] - 0.25 * h)
                 turning[zones] += h / 12.0 * (found.forces[joints, 0] * normals[zones]).sum(axis=1)
                 for zone in np.split(zones, np.flatnonzero(np.diff(zones) > APART) + 1):
-                    if len(zone) > 1:
+                    if len(zone) > SHORT:
                         # a zone up to the first or last joint reaches to the end of the beam
                         low, high = zone[0] - (zone[0] == 1), zone[-1] + (zone[-1] == len(arcs) - 2)
                         values = np.concatenate([M[at][[low]], turning[low + 1 : high], M[at][[high]]])
