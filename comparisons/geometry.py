@@ -37,6 +37,9 @@ from cprbm_scene.curve_records import shape_of
 RigidEdge: TypeAlias = EdgeContact | SplineContact | EllipseContact
 """Contacts with a rigid edge that has places along it."""
 
+SHEAR_FACTOR = 5.0 / 6.0
+"""Of a rectangle: shear area over area (Timoshenko)."""
+
 _SAMPLES = 1001  # along a beam
 _TABLE = 2001  # places u in the table of an offset curve
 _TURNS = 5

@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.geometry import length
+from comparisons.geometry import SHEAR_FACTOR, length
 from comparisons.quantities import stage_of
 from cprbm_scene import (
     Answer,
@@ -57,9 +57,6 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 PIECES = 200
 """Straight pieces of a beam's fine line."""
-
-SHEAR_FACTOR = 5.0 / 6.0
-"""Of a rectangle: shear area over area (Timoshenko)."""
 
 BESIDE = 1e-9
 """Distance, over the beam's length, below which a force acts at a cut."""

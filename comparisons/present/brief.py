@@ -77,7 +77,9 @@ def nearest_rows(compared: Comparison, rows: Sequence[Row], count: int) -> Table
 
     A row has a line for every component.  The first line has difference, stated uncertainty and word.
     """
-    order, body, stage = sorted(range(len(rows)), key=lambda place: _nearness(rows[place])), list[tuple[str, ...]](), ""
+    # the worst word first, and for one word the largest share of the stated uncertainty
+    nearness = [((*SEVERITY, None).index(row.word), 0.0 if row.word is None else -pressure(row)) for row in rows]
+    order, body, stage = sorted(range(len(rows)), key=nearness.__getitem__), list[tuple[str, ...]](), ""
     units = row_units(compared.scene, [rows[place] for place in order[:count]])
     for row in (rows[place] for place in sorted(order[:count])):
         if row.stage != stage:
@@ -122,11 +124,6 @@ def summary(finished: Sequence[Compared]) -> Table:
 def _agreeing(compared: Compared) -> str:
     words = [row.word for row in compared.rows if row.word is not None]
     return f"{words.count(Word.AGREE)} of {len(words)}"
-
-
-def _nearness(row: Row) -> tuple[int, float]:
-    """Sorting key: the worst word first, and for one word the largest share of the stated uncertainty."""
-    return (*SEVERITY, None).index(row.word), 0.0 if row.word is None else -pressure(row)
 
 
 def _lines(row: Row, factor: float, unit: str) -> list[tuple[str, ...]]:

@@ -34,7 +34,7 @@ from comparisons.quantities import (
 )
 from comparisons.stations import Where, complete_stations
 from comparisons.verdict.events import NO_EVENTS, StationEvents, station_events
-from comparisons.verdict.point_forces import away_from_point_forces, sharing_sources
+from comparisons.verdict.point_forces import away_from_point_forces, largest_tilt, sharing_sources
 from comparisons.verdict.runs import Bounds, Runs
 from comparisons.verdict.uncertainty import Error, largest
 from comparisons.verdict.words import Reason, Word
@@ -234,10 +234,15 @@ def _measured(
     key = (row.stage, row.station, probe.name)
     settled = {name: each[key] for name, each in runs.settled.items() if key in each}
     known = {name: Error(each.even[counts], each.uneven[counts]) for name, each in settled.items()}
-    masked = {name: value[counts] for name, value in values.items()}
     return replace(
         row,
-        bounds=runs.bounds(masked, lambda difference: norm(probe.quantity, difference), floor, known),
+        bounds=runs.bounds(
+            {name: value[counts] for name, value in values.items()},
+            lambda difference: norm(probe.quantity, difference),
+            floor,
+            known,
+            row.scale * largest_tilt(runs.scene, stations["fea"]) if runs.theory == "shear" else 0.0,
+        ),
         true_errors=_true_errors(row, exact, size),
     )
 

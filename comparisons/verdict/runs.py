@@ -6,7 +6,8 @@ symbol  meaning
 v_c     value of the CPRBM at N links; v_a in the formulation ``auto``, where ``paper`` is compared
 v_f     value of the finite elements at n elements
 u_c     |v_c − v_a| + u(v_a)
-u_f     u(v_f)
+u_f     u(v_f) + t
+t       error by the tilt of contact forces, in ``shear``: :func:`comparisons.verdict.point_forces.largest_tilt`
 r       round-off
 ======  ==========================================================================================
 
@@ -151,6 +152,7 @@ class Runs:
         size: Callable[[Array], float],
         round_off: float = 0.0,
         known: Mapping[str, Error] = frozendict(),
+        tilt: float = 0.0,
     ) -> Bounds | None:
         """Stated uncertainties of a row; None where a solver lacks the value on the finer grid.
 
@@ -159,6 +161,7 @@ class Runs:
             size: norm of a difference (k,).
             round_off: r.
             known: uncertainties of settled runs, by name.
+            tilt: error of the finite elements that no mesh shows.
         """
         even = values.get("cprbm auto", values["cprbm"])
         of_cprbm = known.get("cprbm") or self._error(even, values, "cprbm")
@@ -167,7 +170,7 @@ class Runs:
             return None
         return Bounds(
             cprbm=size(values["cprbm"] - even) + size(of_cprbm.even) + size(of_cprbm.uneven),
-            fea=size(of_fea.even) + size(of_fea.uneven),
+            fea=size(of_fea.even) + size(of_fea.uneven) + tilt,
             round_off=round_off,
         )
 

@@ -110,6 +110,25 @@ def test_right_solvers_agree_in_every_theory(hinge, theory, option):
         assert row_of(found, ROTATION, 0.067).fea == pytest.approx([0.9 * 0.067 * (1.0 - 1.25e-4 + THEORY[theory])])
 
 
+def test_a_contact_force_tilts_in_shear_whatever_the_mesh(last):
+    # F/(2 GA_s) of the most slender beam in contact, with GA_s = 5/6 E A/(2 (1 + ν)) of a rectangle
+    fea = MadeUp("fea", 0.0)
+    rows = {theory: row_of(compared(last, C, fea, Choices(theory=theory)), ROTATION) for theory in ("stretch", "shear")}
+    beams = [last.beams[beam] for beam in last.contacts["contact"].beams]
+    stiffness = min(
+        5.0
+        / 6.0
+        * last.materials[beam.material].youngs_modulus
+        * beam.thickest
+        * float(beam.width_at(np.zeros(1))[0])
+        / (2.0 * (1.0 + last.materials[beam.material].poisson_ratio))
+        for beam in beams
+    )
+    force = 20.0 * (0.67 * (1.0 + THEORY["shear"]) - CLOSES)
+    assert rows["stretch"].bounds.fea == 0.0
+    assert rows["shear"].bounds.fea == pytest.approx(rows["shear"].scale * 0.5 * force / stiffness, rel=1e-9)
+
+
 def test_an_open_contact_has_no_force_no_place_and_no_uncertainty(hinge):
     found = compared(hinge, C, F)
     force, centre = (row_of(found, f"contact.{name}", 0.067) for name in ("force", "centre"))
