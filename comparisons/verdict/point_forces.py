@@ -8,10 +8,10 @@ A clamp and a contact within an element of the clamp share one force: the sum co
 the shares do not.  Two contacts at one place of a beam also share a force: mechanics determines the sum alone.
 
 In ``shear`` a point force F makes a kink F/GA_s in the neutral line, and a contact force acts along the mean normal of
-both sides.  Finite elements spread the kink over the element with the force.  There the normal tilts by up to
-F/(2 GA_s): by nothing in the middle of the element, by the whole angle beside a node.  The tilt does not fall with the
-distance of the nodes, so that no mesh shows the error.  Over a probe's scale the error was up to half the angle in
-random scenes.
+both sides.  Finite elements spread the kink over the element with the force, and the normal there tilts.  The tilt is
+an odd function of the distance from the middle of the element, and zero at the nodes.  On a cantilever over a circle,
+with 20 to 59 elements, the tilt was up to 0.45 of F/(2 GA_s), and did not fall with the number of elements: no mesh
+shows the error.  Over a probe's scale the error was up to 0.5 of this angle in random scenes.
 """
 
 from collections.abc import Iterable, Sequence
@@ -83,11 +83,11 @@ def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str
 
 
 def largest_tilt(scene: Scene, station: StationAnswer) -> float:
-    """The largest F/(2 GA_s) of a contact's resultant F on a beam of least GA_s, rad; 0 without contact."""
+    """The largest F/(4 GA_s) of a contact's resultant F on a beam of least GA_s, rad; 0 without contact."""
     return max(
         (
             float(np.hypot(*station.forces.force[station.forces.chosen(name, beam)].sum(axis=0)))
-            * (1.0 + scene.materials[record.material].poisson_ratio)
+            * (0.5 + 0.5 * scene.materials[record.material].poisson_ratio)
             / (scene.materials[record.material].youngs_modulus * SHEAR_FACTOR)
             / float(record.thinnest * np.min(record.width_at(record.knots)))
             for name, contact in scene.contacts.items()
