@@ -196,10 +196,10 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
 def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     """Contacts after moving places become joints again; the joints within a link share the force."""
     places, closed = copied(contacts.places), contacts.closed.copy()
-    arcs, span, given_up = arcs_of(geometry.arrays, places), geometry.arrays.link[places.piece], set(contacts.given_up)
+    arcs, link, given_up = arcs_of(geometry.arrays, places), geometry.arrays.link[places.piece], set(contacts.given_up)
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
-        share = 1.0 - np.abs(arcs - arcs[k]) / span[k]
+        share = 1.0 - np.abs(arcs - arcs[k]) / link[k]
         same = (places.pair == places.pair[k]) & (places.curve == places.curve[k])
         beside = same & ~places.moves & (share > 0.0) & contacts.closed[k]
         closed |= beside
@@ -223,7 +223,7 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
     heavier = runs[np.arange(len(runs)), np.argmax(forces, axis=1)]
     points, gaps, curvatures = points_at(z, curves, places, heavier, forces.sum(axis=1), contacts.counters)
     arcs, found = arcs_of(curves, places), arcs_of(curves, points)
-    overlap, span = -OVERLAP - beside_points(curves, places, closed)[1], curves.link[places.piece]
+    overlap, link = -OVERLAP - beside_points(curves, places, closed)[1], curves.link[places.piece]
     replaced = np.zeros(len(closed), dtype=bool)
     created = taken(places, replaced)
     for i in np.flatnonzero(
@@ -241,8 +241,8 @@ def _points(geometry: Geometry, solved: Touched) -> Contacts | None:
         others = closed & (places.pair == places.pair[best]) & (places.curve == places.curve[best])
         others[run] = False
         around = np.concatenate([arcs[others], arcs_of(curves, created)[created.pair == places.pair[best]]])
-        lonely = not np.any(np.abs(around - found[i]) < ISOLATED * span[best])
-        if lonely and np.any(np.abs(arcs[run] - found[i]) < span[best]):
+        lonely = not np.any(np.abs(around - found[i]) < ISOLATED * link[best])
+        if lonely and np.any(np.abs(arcs[run] - found[i]) < link[best]):
             replaced[run] = closed[run]
             created = joined(created, taken(points, np.array([i])))
     return _with_points(contacts, created, replaced) if len(created.pair) else None
