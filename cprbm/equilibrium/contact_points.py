@@ -75,7 +75,12 @@ def touched_equilibrium(
     geometry, contacts = system.geometry, start.contacts
     if not geometry.pairs:
         return solve_set(system, start, iterations, springs)
-    corners = corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters)
+    # beams of pairs that are kept open may overlap corners: the side of the begin stays
+    corners = np.where(
+        bool(contacts.kept_open) & (contacts.corner_sides != 0.0),
+        contacts.corner_sides,
+        corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters),
+    )
     contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
     contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts, turning=True), False, start.z
     old = contacts.places
