@@ -11,7 +11,6 @@ EXPECTED = expectations()
 
 ZONE = "the step to a wide zone is refused as a jump"
 OPEN = {
-    "held-by-a-contact": "a joint beside the corner closes first at 80 links; 60, 90, 120 and 160 links complete",
     "bypassed-fold": "the set of closed places returns, and no step leads to the fold",
     "zone-off-the-clamp-wide": ZONE,
     "zone-off-the-clamp-backwards": ZONE,
