@@ -155,16 +155,16 @@ def rows_of(runs: Runs) -> tuple[Row, ...]:
             at if at and at.branch == branch else None for at in (each and each.get(where) for each in opinions)
         )
         missing = tuple(name for name in runs.same_theory if name not in stations)
+        tilt = largest_tilt(scene, stations["fea"]) if runs.theory == "shear" else 0.0
         for probe in scene.probes_in(where[0]):
-            pair = stations["cprbm"], stations["fea"]
-            row = bare_row(scene, pair, probe, where, scales[where[0], probe.name])
+            row = bare_row(scene, (stations["cprbm"], stations["fea"]), probe, where, scales[where[0], probe.name])
             row = replace(
                 row,
                 events=events[where],
                 shared=sharing_sources(scene, stations.values(), probe.of) if probe.quantity in SHARED else None,
                 missing=missing,
             )
-            found.append(_measured(runs, row, stations, exact, other))
+            found.append(_measured(runs, row, stations, exact, other, tilt))
     return _with_largest_uncertainties(found)
 
 
@@ -201,6 +201,7 @@ def _measured(
     stations: Mapping[str, StationAnswer],
     exact: StationAnswer | None,
     other: StationAnswer | None,
+    tilt: float,
 ) -> Row:
     """The row with its difference, step of theory, stated uncertainties and true errors."""
     probe = row.probe
@@ -241,7 +242,7 @@ def _measured(
             lambda difference: norm(probe.quantity, difference),
             floor,
             known,
-            row.scale * largest_tilt(runs.scene, stations["fea"]) if runs.theory == "shear" else 0.0,
+            tilt * row.scale,
         ),
         true_errors=_true_errors(row, exact, size),
     )

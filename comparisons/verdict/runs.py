@@ -161,7 +161,7 @@ class Runs:
             size: norm of a difference (k,).
             round_off: r.
             known: uncertainties of settled runs, by name.
-            tilt: error of the finite elements that no mesh shows.
+            tilt: t.
         """
         even = values.get("cprbm auto", values["cprbm"])
         of_cprbm = known.get("cprbm") or self._error(even, values, "cprbm")
