@@ -1,13 +1,12 @@
 """Records of a presentation: columns and tables of texts, plain data of JSON, figures, and sections of a page."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-import numpy as np
+from pydantic_core import to_jsonable_python
 
 from comparisons.writing import write
 
@@ -107,20 +106,7 @@ def records_of(columns: Sequence[Column[T]], items: Iterable[T]) -> list[Plain]:
 
 def plain(value: object) -> Any:  # noqa: ANN401 - all types of JSON
     """``value`` in the types of JSON; None for a number without a finite value."""
-    match value:
-        case Mapping():
-            return {str(key): plain(item) for key, item in value.items()}
-        case list() | tuple():
-            return [plain(item) for item in value]
-        case np.ndarray():
-            whole = value.dtype.kind != "f" or bool(np.isfinite(value).all())
-            return value.tolist() if whole else plain(value.tolist())
-        case bool() | int() | str() | None:
-            return value
-        case float() | np.floating():
-            return float(value) if math.isfinite(value) else None
-        case _:
-            return str(value)
+    return to_jsonable_python(value, inf_nan_mode="null", fallback=lambda array: array.tolist())
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ class Outcome:
         iterations: sum over all stations.
         seconds: time of the solve.
         limit: time limit of the solve, s.
-        numbers: all numbers of the answer.
+        numbers: all numbers of the answer; of a comparison a number that the CPRBM did not reach has no value.
     """
 
     solver: str
@@ -54,6 +54,11 @@ class Outcome:
     def completed(self) -> bool:
         """Whether every station was reached."""
         return self.ending == "COMPLETED"
+
+    @property
+    def known(self) -> list[NumberRecord]:
+        """Numbers with a value."""
+        return [number for number in self.numbers if number["value"] is not None]
 
     @property
     def branch(self) -> tuple[bool, int]:

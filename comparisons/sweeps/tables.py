@@ -175,8 +175,8 @@ def _figures(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> Iterator
 
 
 def _fullest(solved: Solved) -> Outcome:
-    """The first outcome with the most numbers."""
-    return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers))
+    """The first outcome with the most known numbers."""
+    return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.known))
 
 
 def dependent(scene: Scene, solved: Solved) -> list[Measure]:

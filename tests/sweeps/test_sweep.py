@@ -42,16 +42,24 @@ def swept(scene, out, *options):
     return run(["sweep", str(scene), "-n", "6", "--quiet", "--out", str(out), *options])
 
 
-def test_of_values_along_a_beam_the_largest_magnitude_counts():
+def test_numbers_of_a_measure_and_texts_with_units():
     record = {"stage": "load", "station": 1.0, "probe": "b.bending_stress", "component": "", "branch": 0}
     stresses = [
         {**record, "arc_length": place, "value": value} for place, value in ((0.0, 2.0), (0.1, -3.0), (0.2, 1.0))
     ]
     force = {**record, "probe": "c.force", "arc_length": None, "value": -5.0}
-    outcome = Outcome("cprbm", "COMPLETED", "", numbers=(*stresses, force))
+    missing = {**stresses[0], "station": 2.0, "value": None}  # of a comparison whose CPRBM stops at the first station
+    outcome = Outcome("compare", "STEP_TOO_SMALL", "", numbers=(*stresses, force, missing))
     stress, pressure = (Measure("load", probe, "", False, 1, 1.0, "") for probe in ("b.bending_stress", "c.force"))
     assert (stress.last(outcome)["value"], stress.values(outcome)) == (3.0, [3.0])
     assert (pressure.last(outcome), pressure.values(outcome)) == (force, [-5.0])
+    degree = math.radians(1.0)
+    axis = Axis("turn", 0.0, 30.0 * degree, unit="deg", size=degree)
+    assert axis.text(axis.high) == "turn = 30°"
+    assert (axis.label, axis.column) == ("turn, °", "turn, deg")
+    measure = Measure("load", "A.rotation", "", every=False, stations=1, size=degree, unit="deg")
+    assert measure.text(12.5) == "12.5°"
+    assert replace(measure, unit="mm").text(12.5) == "12.5 mm"
 
 
 def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(scene, tmp_path, capsys):
@@ -150,13 +158,10 @@ def test_samples(scene, tmp_path, sample):
     assert all(1.0 <= value <= 3.0 for value in values)
 
 
-def test_a_table_of_a_single_point_has_a_page(scene, tmp_path):
+def test_a_table_of_points_may_have_a_single_point_comments_and_semicolons(scene, tmp_path):
     (tmp_path / "points.csv").write_text("t\n1.7mm\n", "utf-8")
     assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 0
     assert (tmp_path / "s" / "index.html").exists()
-
-
-def test_a_table_may_have_comments_and_semicolons(scene, tmp_path):
     (tmp_path / "points.csv").write_bytes(b"# measured\r\n\r\nt;L\r\n1.7mm; 95\r\n\r\n1.9mm;100mm\r\n")
     assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 0
     assert [row["L, mm"] for row in table(tmp_path / "s", "last.csv")] == ["95.0", "100.0"]
@@ -319,13 +324,3 @@ def test_a_cantilever_follows_the_elastica_with_order_four(tmp_path):
     assert max(errors[40]) < 5e-4
     orders = [np.log2(np.divide(errors[n], errors[2 * n])) for n in (20, 40, 80)]
     np.testing.assert_allclose(orders, 4.0, atol=0.1)
-
-
-def test_texts_have_the_symbol_of_degrees_and_files_the_unit_of_the_scene():
-    degree = math.radians(1.0)
-    axis = Axis("turn", 0.0, 30.0 * degree, unit="deg", size=degree)
-    assert axis.text(axis.high) == "turn = 30°"
-    assert (axis.label, axis.column) == ("turn, °", "turn, deg")
-    measure = Measure("load", "A.rotation", "", every=False, stations=1, size=degree, unit="deg")
-    assert measure.text(12.5) == "12.5°"
-    assert replace(measure, unit="mm").text(12.5) == "12.5 mm"
