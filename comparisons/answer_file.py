@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cprbm_scene import Answer, Array, frozendict
+from cprbm_scene.answer import frozen_array
 
 DAMAGES = (EOFError, zlib.error, gzip.BadGzipFile, KeyError, IndexError, TypeError, ValueError)
 """Errors of :func:`unpacked` on damaged bytes."""
@@ -122,12 +123,10 @@ def _read_columns(document: Mapping[str, Any]) -> list[Array]:
     signless = np.ascontiguousarray(planes.reshape(8, -1).T).view("<u8").ravel()
     joined = (signless >> np.uint64(1)).view("<i8") ^ -(signless & np.uint64(1)).view("<i8")
     parts = np.split(joined, np.cumsum([math.prod(shape) for shape in shapes])[:-1]) if shapes else []
-    columns: list[Array] = [
-        _sums(part.reshape(shape), order).view("<f8") for part, shape, order in zip(parts, shapes, orders, strict=True)
+    return [
+        frozen_array(_sums(part.reshape(shape), order).view("<f8"))
+        for part, shape, order in zip(parts, shapes, orders, strict=True)
     ]
-    for column in columns:
-        column.setflags(write=False)
-    return columns
 
 
 def _signless(integers: Integers) -> Integers:

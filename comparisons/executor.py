@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import Literal, ParamSpec, TypeVar
+from typing import Literal, ParamSpec, TypeVar, cast
 from weakref import WeakSet
 
 from comparisons import logs
@@ -102,8 +102,7 @@ class Child:
             raise
         if error is not None:
             raise error
-        found: T = value
-        return found
+        return cast("T", value)
 
     def kill(self) -> None:
         """End the child by force; a running call raises :class:`WorkerDiedError`."""

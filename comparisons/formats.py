@@ -112,8 +112,7 @@ def file_unit(scene: Scene, unit: str) -> tuple[float, str]:
 
 def _stated(scene: Scene, unit: str) -> bool:
     """Whether the file states a unit of a quantity in the SI ``unit``."""
-    fields = scene.display_units.model_fields_set
-    return unit in _POWERS and any(f"{{{field}}}" in _POWERS[unit][1] for field in fields)
+    return unit in _POWERS and any(f"{{{field}}}" in _POWERS[unit][1] for field in scene.display_units.model_fields_set)
 
 
 def axis_unit(scene: Scene, unit: str, size: float) -> tuple[float, str]:

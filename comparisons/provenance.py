@@ -3,6 +3,7 @@
 import os
 import platform
 import sys
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
@@ -37,13 +38,20 @@ def machine() -> dict[str, str | int]:
     }
 
 
+def version_of(distribution: str) -> str:
+    """The installed version of a distribution; empty without an installation."""
+    with suppress(PackageNotFoundError):
+        return version(distribution)
+    return ""
+
+
 def page_origin() -> dict[str, str | int]:
     """The machine, with the versions of this program and of the library that draws, for a page."""
-    try:
-        own = version("cprbm")
-    except PackageNotFoundError:
-        own = "from its sources"
-    return {"cprbm": own, **machine(), "matplotlib": version("matplotlib")}
+    return {
+        "cprbm": version_of("cprbm") or "from its sources",
+        **machine(),
+        "matplotlib": version("matplotlib"),
+    }
 
 
 def _processor() -> str:

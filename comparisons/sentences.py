@@ -180,8 +180,7 @@ def closing_sentence(scene: Scene, closing: Closing) -> str:
     loads = " and ".join(
         f"{with_unit(scene, value, unit, 5)} in {name}" for value, name in zip(pair, NAMES.values(), strict=True)
     )
-    sizes = bounds.total, event_tolerance(scene, stage)
-    stated, allowed = (distance_text(scene, size, unit) for size in sizes)
+    stated, allowed = (distance_text(scene, size, unit) for size in (bounds.total, event_tolerance(scene, stage)))
     return f"{contact} closes in {stage.name} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
 
 
@@ -289,8 +288,7 @@ def _measured(row: Row) -> str:
 
 def _parts(row: Row) -> str:
     assert row.bounds is not None
-    parts = {"CPRBM": row.bounds.cprbm, "FEA": row.bounds.fea}
-    return ", ".join(f"{name} {_of_scale(part, row)}" for name, part in parts.items())
+    return f"CPRBM {_of_scale(row.bounds.cprbm, row)}, FEA {_of_scale(row.bounds.fea, row)}"
 
 
 def _of_scale(value: float, row: Row) -> str:

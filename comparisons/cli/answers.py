@@ -42,8 +42,7 @@ def _write(
     from comparisons.present import case_tables, csv_table, figures, json_document  # not for a quiet solve
 
     if request.json_file is not None:
-        document = json_document.solution(scene, answer, searches, audited)
-        output.write_json(request.json_file, {"cases": [document]})
+        output.write_json(request.json_file, {"cases": [json_document.solution(scene, answer, searches, audited)]})
     if request.csv_file is not None:
         write(request.csv_file, csv_table.csv_of(scene, answer))
     if request.plot_file is not None and answer.stations:

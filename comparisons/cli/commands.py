@@ -87,8 +87,7 @@ class Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands; the developers' tools belong to a checkout."""
-        hides_tools = not is_checkout()
-        return [name for name in self.commands if not (hides_tools and self.tool_of(name))]
+        return [name for name in self.commands if not absence_of(self.tool_of(name))]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of every group under its heading."""

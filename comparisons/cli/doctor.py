@@ -8,12 +8,12 @@ import shlex
 import subprocess
 import sys
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 
 import click
 
 from comparisons import cases
 from comparisons.cli.errors import code_of
+from comparisons.provenance import version_of
 
 SECONDS = 120.0
 
@@ -48,9 +48,8 @@ class Library:
 
     def state(self) -> tuple[bool, str]:
         """Whether the library can be used; and version, purpose, and the command that installs it if needed."""
-        try:
-            found = version(self.name)
-        except PackageNotFoundError:
+        found = version_of(self.name)
+        if not found:
             return False, f"{'missing':<12} for {self.needed_for}; install: {self.line}"
         trouble = trouble_with(self.module)
         if not trouble:

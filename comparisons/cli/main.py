@@ -295,12 +295,10 @@ DEVELOPMENT = (
 def _version(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
     """Print the installed version; a folder of sources without installation has no version."""
     if value:
-        from importlib.metadata import PackageNotFoundError, version
+        from comparisons.provenance import version_of
 
-        try:
-            click.echo(f"cprbm {version('cprbm')}")
-        except PackageNotFoundError:
-            click.echo("cprbm, run from its sources: no version is installed")
+        own = version_of("cprbm")
+        click.echo(f"cprbm {own}" if own else "cprbm, run from its sources: no version is installed")
         ctx.exit()
 
 

@@ -86,8 +86,7 @@ def optimise(request: output.Request, goal: Path, vary: tuple[str, ...], starts:
     with _runner(request, scene, "optimise", starts * solves) as (out, runner):
         found = optimum(problem, runner, starts, solves)
     _put(request, scene, out, optimum_section(found), str(out / "optimum.json"))
-    undecided = found.compared.verdict == "UNDECIDED"
-    return code_of(incomplete=bool(found.doubt) and not undecided, undecided=bool(found.doubt))
+    return code_of(incomplete=bool(found.doubt) and found.compared.verdict != "UNDECIDED", undecided=bool(found.doubt))
 
 
 @contextmanager

@@ -186,8 +186,7 @@ def report(request: output.Request, sizes: tuple[int, ...], without: tuple[str, 
     missing = found.missing()
     with _run(request, questions) as run, output.bar(len(missing), shown=not request.quiet) as progress:
         for question in progress.through(missing):
-            compared = _compared(request, run, question)
-            found.add(question, compared, tuple(found.further_sections(question, run)))
+            found.add(question, _compared(request, run, question), tuple(found.further_sections(question, run)))
         found.add_table()
     output.write_json(request.json_file, found.document() if request.json_file else {})
     for chapter in found.chapters.values() if request.prints else ():

@@ -244,10 +244,9 @@ def error_table(compared: OffsetComparison) -> Table:
 
 def claim_rows(compared: OffsetComparison) -> list[tuple[str, ...]]:
     """Claims with their spacings, bounds, largest errors, places and findings."""
-    rows = _claims_table(compared).rows
     return [
         (f"{claim}, spacing {spacing}", bound, largest, at, met)
-        for claim, spacing, bound, largest, at, _, met, *_ in rows
+        for claim, spacing, bound, largest, at, _, met, *_ in _claims_table(compared).rows
     ]
 
 

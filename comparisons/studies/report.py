@@ -105,8 +105,7 @@ class Report:
     @property
     def _has_table(self) -> bool:
         """Whether run times are measured, and the questions include all cases of the paper's Table 1, as built in."""
-        names = {cell.case for cell in table1.CELLS}
-        return self.times and all(cases.asked(name) in self.questions for name in names)
+        return self.times and all(cases.asked(name) in self.questions for name in {cell.case for cell in table1.CELLS})
 
     def further_sections(self, question: Question, run: Run) -> Iterator[Section]:
         """Error against N and run times of a question, or the refusals of a solver; run times come last.

@@ -134,8 +134,9 @@ class Runs:
     @cached_property
     def reached(self) -> tuple[Where, ...]:
         """Stations of both compared runs, in order."""
-        both = [self.stations[name] for name in SOLVERS]
-        return tuple(where for where in stations_of(self.scene) if all(where in each for each in both))
+        return tuple(
+            where for where in stations_of(self.scene) if all(where in self.stations[name] for name in SOLVERS)
+        )
 
     def at(self, where: Where) -> dict[str, StationAnswer]:
         """Stations of all runs of the theory with this station, by name of the run."""

@@ -34,11 +34,18 @@ def ended(solver, ending=Ending.STEP_TOO_SMALL):
     return answer
 
 
-def test_compare_ends_with_0_if_all_agree(right, capsys):
+def test_the_exit_code_of_compare(right, capsys):
+    """0 if all agree, 1 if a case differs or a solver does not complete, 3 for nothing worse than undecided."""
     assert run(["compare", "hinge"], right) == 0
     captured = capsys.readouterr()
     assert "hinge: AGREE" in captured.out
     assert captured.err == ""
+    assert run(["compare", "hinge"], Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)) == 1
+    assert "hinge: DIFFER" in capsys.readouterr().out
+    assert run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea)) == 1
+    assert "UNDECIDED" in capsys.readouterr().out
+    assert run(["compare", "hinge", "--quiet"], Solvers(MadeUp("cprbm", 2e-2), right.fea)) == 3
+    assert capsys.readouterr().out.startswith("hinge: UNDECIDED")
 
 
 @pytest.mark.parametrize(
@@ -53,21 +60,6 @@ def test_the_exact_reference_is_asked_by_a_rule_or_by_an_option(command, option,
     assert any(row["exact"] is not None for row in rows) is there
 
 
-def test_compare_ends_with_1_if_any_differs(right, capsys):
-    assert run(["compare", "hinge"], Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)) == 1
-    assert "hinge: DIFFER" in capsys.readouterr().out
-
-
-def test_compare_ends_with_1_if_a_solver_does_not_complete(right, capsys):
-    assert run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea)) == 1
-    assert "UNDECIDED" in capsys.readouterr().out
-
-
-def test_compare_ends_with_3_if_nothing_is_worse_than_undecided(right, capsys):
-    assert run(["compare", "hinge", "--quiet"], Solvers(MadeUp("cprbm", 2e-2), right.fea)) == 3
-    assert capsys.readouterr().out.startswith("hinge: UNDECIDED")
-
-
 @pytest.mark.parametrize("command", ["solve", "compare"])
 def test_an_implausible_load_is_noted_before_the_answer(command, right, tmp_path, capsys):
     soft = tmp_path / "soft.toml"
@@ -76,7 +68,7 @@ def test_an_implausible_load_is_noted_before_the_answer(command, right, tmp_path
     assert capsys.readouterr().err.startswith(f"Note: {soft}: loads.M: M L/(E I) is ")
 
 
-def test_solve_ends_with_0_or_1(right, capsys):
+def test_solve_ends_with_0_or_1_also_without_a_station(right, capsys):
     assert run(["solve", "hinge"], right) == 0
     assert "B.displacement" in capsys.readouterr().out
     assert run(["solve", "hinge", "--solver", "fea", "--quiet"], Solvers(right.cprbm, ended(right.fea))) == 1
@@ -84,8 +76,6 @@ def test_solve_ends_with_0_or_1(right, capsys):
     assert captured.out == ""
     assert "The step fell below 1e-9." in captured.err
 
-
-def test_solve_that_reached_no_station_shows_what_it_has(right, capsys):
     def nothing(scene, choices):
         return replace(ended(right.cprbm)(scene, choices), stations=())
 
@@ -110,12 +100,6 @@ def test_json_in_a_file_comes_with_the_tables(right, capsys, tmp_path):
     assert "Certificates" in capsys.readouterr().out
 
 
-def test_out_writes_a_report_whatever_the_verdict(right, tmp_path, capsys):
-    wrong = Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)
-    assert run(["compare", "hinge", "--out", str(tmp_path / "r")], wrong) == 1
-    assert "DIFFER" in (tmp_path / "r" / "index.html").read_text("utf-8")
-
-
 def test_all_writes_the_report_where_it_stands(right, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(page, "figures_of", lambda compared: ())
@@ -132,7 +116,7 @@ def test_options_reach_the_solvers(right, capsys):
         asked.append(choices)
         return right.cprbm(scene, choices)
 
-    arguments = ["-n", "beam1=30,beam2=40", "--formulation", "paper", "--elements", "60"]
+    arguments = ["--links", "beam1=30,beam2=40", "--formulation", "paper", "--elements", "60"]
     assert run(["solve", "hinge", "--quiet", *arguments, "--penetration", "1e-6"], Solvers(noting, right.fea)) == 0
     assert asked[0].links == {"beam1": 30, "beam2": 40}
     assert (asked[0].formulation, asked[0].elements, asked[0].penetration) == ("paper", 60, 1e-6)
@@ -182,11 +166,6 @@ def test_a_solver_answers_in_the_theory_of_its_options(hinge, right, solver, opt
     )
     error = {"cprbm": 2e-3, "fea": -5e-4 / 4.0}[solver]
     assert row[solver] == pytest.approx(0.9 * row["station"] * (1.0 + error + THEORY[theory]), rel=1e-9)
-
-
-def test_runs_with_one_trouble_are_named_in_one_sentence(right, capsys):
-    run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea))
-    assert "cprbm, cprbm finer, cprbm beside: it ended early" in capsys.readouterr().out
 
 
 def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):
@@ -283,7 +262,7 @@ def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, m
             return "3.2.1"
         raise PackageNotFoundError(name)
 
-    monkeypatch.setattr("importlib.metadata.version", version)
+    monkeypatch.setattr("comparisons.provenance.version", version)
     assert run(["--version"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ("cprbm 3.2.1\n" if installed else "cprbm, run from its sources: no version is installed\n")
@@ -352,15 +331,6 @@ def test_help_shows_every_command_once_under_three_headings(capsys):
     assert shown == allowed
 
 
-def test_links_is_the_long_name_of_n(right, capsys):
-    """Both names give the same numbers."""
-    printed = []
-    for name in ("-n", "--links"):
-        assert run(["solve", "hinge", name, "10", "--json", "-"], solvers=right) == 0
-        printed.append(re.sub(r'"seconds": [^,]+', "", capsys.readouterr().out))
-    assert printed[0] == printed[1]
-
-
 MODULE = [sys.executable, "-m", "comparisons"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT)}
 
@@ -372,15 +342,12 @@ def completed(*words):
     return [tuple(line.split(",")) for line in done.stdout.splitlines()]
 
 
-def test_cases_and_files_are_offered_where_they_may_stand():
+def test_commands_options_cases_and_files_are_offered_where_they_may_stand():
     names = [("plain", name) for name in cases.names() if name.startswith("gripper")]
     assert len(names) > 1
     assert completed("cprbm", "solve", "gripper") == [("file", "gripper"), *names]
     assert completed("cprbm", "solve", "al") == [("file", "al")]
     assert completed("cprbm", "compare", "hinge", "al") == [("file", "al"), ("plain", "all")]
-
-
-def test_commands_and_options_are_offered():
     assert completed("cprbm", "so") == [("plain", "solve")]
     assert completed("cprbm", "bench", "hinge", "--method", "slsq") == [("plain", "slsqp")]
 

@@ -24,7 +24,7 @@ from cprbm_scene.reading import schema
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_first_scene_is_solved_and_touches(tmp_path, capsys):
+def test_the_first_scene_is_solved_and_touches_and_is_not_written_over(tmp_path, capsys):
     assert run(["new", "my-strip", "--out", str(tmp_path)]) == 0
     path = tmp_path / "my-strip.toml"
     assert str(path) in capsys.readouterr().out
@@ -33,9 +33,6 @@ def test_the_first_scene_is_solved_and_touches(tmp_path, capsys):
     answer = cprbm.answer(scene, cprbm.Settings(links=23))
     assert answer.completed
     assert "pin" in answer.stations[-1].touching
-
-
-def test_what_is_there_is_kept(tmp_path, capsys):
     path = tmp_path / "mine.toml"
     path.write_text("my own", encoding="utf-8")
     assert run(["new", "mine", "--out", str(tmp_path)]) == 2
@@ -113,7 +110,7 @@ def install(monkeypatch, asked, missing):
         return "9.9"
 
     monkeypatch.setattr(libraries, "LIBRARIES", asked)
-    monkeypatch.setattr(libraries, "version", version)
+    monkeypatch.setattr("comparisons.provenance.version", version)
     monkeypatch.setattr(libraries, "trouble_with", lambda module: "")
 
 
@@ -138,7 +135,7 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     gmsh = next(library for library in libraries.LIBRARIES if library.name == "gmsh")
     library = replace(gmsh, module="gmsh_of_a_bare_machine")
     monkeypatch.setattr(libraries, "LIBRARIES", (library,))
-    monkeypatch.setattr(libraries, "version", lambda name: "4.0")
+    monkeypatch.setattr("comparisons.provenance.version", lambda name: "4.0")
     assert run(["doctor"]) == 0
     assert (
         "its system libraries, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
