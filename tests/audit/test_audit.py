@@ -228,14 +228,11 @@ def test_a_taut_strip_on_a_circle_has_the_moments_of_its_mesh_alone(solve):
     assert any("its moments make" in sentence for sentence in audit(scene, bent).complaints)
 
 
-def test_an_answer_of_a_single_element_is_audited():
-    """Such a beam has no place between its ends."""
+def test_answers_of_a_single_element_and_without_internal_forces():
+    # Such a beam has no place between its ends.
     scene = scene_from(cantilever_data(force(0.0, 1.0), [1e-3 * RIGIDITY / LENGTH**2]))
     found = audit(scene, fea_reference.answer(scene, fea_reference.Settings(elements=1)))
     assert (found.complaints, found.stations, found.unbalance) == ((), 1, 0.0)
-
-
-def test_an_answer_without_internal_forces_is_not_audited():
     answer = answered("hinge", "shear")
     bare = replace(answer, stations=tuple(replace(station, beams={}) for station in answer.stations))
     assert audit(asked("hinge"), bare).stations == 0

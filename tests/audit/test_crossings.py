@@ -194,19 +194,15 @@ def test_a_beam_that_passes_through_itself_is_named_once_with_the_first_load():
     (said,) = crossings(scene_of(BESIDE), rolled(0.5), rolled(1.1), rolled(1.3))
     assert "b passes through itself from push 2 N on" in said
     assert 'may_cross = [["b", "b"]]' in said
-
-
-def test_a_loop_whose_ends_cross_passes_through_itself():
     half = line((-0.02, 0.0), (0.0, 0.02)), line((0.0, 0.02), (0.005, -0.02)), line((0.005, -0.02), (-0.02, 0.015))
     assert len(crossings(scene_of(BESIDE), {"b": np.concatenate((half[0], half[1][1:], half[2][1:]))})) == 1
-
-
-def test_a_tight_bend_is_no_crossing():
     # a hairpin of two straight legs about a radius of 0.8 thicknesses
     s = np.linspace(0.0, 0.1, 2001)
     turn = np.clip((s - 0.04) / (0.8 * T), 0.0, np.pi)
     places = np.column_stack([np.cumsum(of) * s[1] for of in (np.cos(turn), np.sin(turn))])
     assert crossings(scene_of(BESIDE), {"b": places}) == ()
+    keys = {"contacts": {"both": {"kind": "beam-beam", "between": ["a", "b"]}}}
+    assert len(crossings(scene_of(BESIDE, **keys), rolled(1.3))) == 1
 
 
 @pytest.mark.parametrize(
@@ -216,11 +212,6 @@ def test_a_tight_bend_is_no_crossing():
 )
 def test_a_beam_may_pass_through_itself_where_the_scene_permits_it(keys):
     assert crossings(scene_of(BESIDE, **keys), rolled(1.3)) == ()
-
-
-def test_a_contact_of_a_beam_with_another_permits_no_crossing_of_itself():
-    keys = {"contacts": {"both": {"kind": "beam-beam", "between": ["a", "b"]}}}
-    assert len(crossings(scene_of(BESIDE, **keys), rolled(1.3))) == 1
 
 
 def test_an_edge_twice_is_a_mistake():

@@ -92,28 +92,19 @@ def bent(hinge, monkeypatch):
     return measures.benchmark_scene(hinge)
 
 
-def test_the_exponent_is_that_of_the_law_set_up_included(bent):
+def test_the_exponent_of_time_by_least_squares_at_the_larger_sizes(bent):
     found = Clock(bent, auto=power(1.2, setup=1e-3), fea=power(0.9)).benchmark(repeat=3)
     for name, exponent in (("auto", 1.2), ("fea", 0.9)):
         assert trend(found.rows(name))[:2] == ((40, 80, 160), pytest.approx(exponent, rel=1e-9))
     assert found.rows("auto")[0].median("set-up") == pytest.approx(1e-3)
     assert found.rows("auto")[0].median("solve") == pytest.approx(2e-3 * 40**1.2 - 1e-3)
-
-
-def test_the_fit_is_by_least_squares_of_the_logarithms(bent):
-    """log₂ of 1, 2 and 8 s at three doublings: slope (3 − 0)/2."""
+    # log₂ of 1, 2 and 8 s at three doublings: slope (3 − 0)/2.
     times = {40: 1.0, 80: 2.0, 160: 8.0}
     found = Clock(bent, fea=lambda n: (0.0, times[n], 5, "COMPLETED", 0.0)).benchmark(repeat=1)
     assert trend(found.rows("fea"))[1] == pytest.approx(1.5, rel=1e-12)
-
-
-def test_smaller_sizes_take_no_part_in_the_fit(bent):
     law = lambda n: (0.0, 1.0 if n < 40 else 2e-3 * n, 5, "COMPLETED", 0.0)  # noqa: E731
     fit = trend(Clock(bent, auto=law).benchmark(sizes=(10, 40, 80), repeat=1).rows("auto"))
     assert fit[:2] == ((40, 80), pytest.approx(1.0, rel=1e-9))
-
-
-def test_one_size_has_no_exponent(bent):
     fit = trend(Clock(bent, auto=power(1.0)).benchmark(sizes=(40,), repeat=2).rows("auto"))
     assert fit == ((40,), None, None)
 
@@ -133,22 +124,19 @@ def test_a_run_of_less_than_a_second_counts_when_it_is_made_a_second_time_in_a_r
     assert [solve for _, solve in found.rows()[0].seconds] == pytest.approx((0.2, 0.3, 0.4, 3.0))
 
 
-def test_median_and_quartiles(bent):
-    """1, 2, 3, 4 and 10 s: the median is 3, the quartiles 2 and 4."""
+def test_median_quartiles_and_iterations(bent):
+    # 1, 2, 3, 4 and 10 s: the median is 3, the quartiles 2 and 4.
     times = iter([99.0, 3.0, 10.0, 1.0, 4.0, 2.0])  # the first does not count
     found = Clock(bent, auto=lambda n: (0.5, next(times), 5, "COMPLETED", 0.0)).benchmark(sizes=(40,), repeat=5)
     (row,) = found.rows()
     assert (row.median("set-up"), row.median("solve"), row.median("both"), row.spread("solve")) == (0.5, 3.0, 3.5, 2.0)
-
-
-def test_iterations_are_counted_in_all_per_station_and_against_the_smallest(bent):
     found = Clock(bent, auto=power(1.0, iterations=lambda n: n // 40)).benchmark(repeat=1)
     assert [timing.iterations for timing in found.rows("auto")] == [2, 4, 8]
     assert [timing.iterations_per_station for timing in found.rows("auto")] == [1.0, 2.0, 4.0]
     assert trend(found.rows("auto"))[2] == 4.0
 
 
-def test_what_does_not_complete_is_shown_with_its_reason_and_counts_for_nothing(bent):
+def test_a_row_that_does_not_complete_has_its_reason_and_no_ratio_and_no_figure(bent):
     ends = lambda n: (0.0, 1e-6, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
     found = Clock(bent, paper=power(1.0), ipopt=ends).benchmark(repeat=2)
     assert trend(found.rows("ipopt"))[0] == (40, 160)
@@ -156,6 +144,11 @@ def test_what_does_not_complete_is_shown_with_its_reason_and_counts_for_nothing(
     assert (row["ended"], row["why"], row["counts"]) == ("GAVE_UP", "why not", False)
     assert any("GAVE_UP" in line for line in section.tables_of(found)[0].rows)
     assert [one["n"] for one in ratios(found)] == [40, 160]
+    ends = lambda n: (0.0, 1e-6, 5, "GAVE_UP", 0.0)  # noqa: E731
+    (one,) = ratios(Clock(bent, auto=power(1.0), paper=power(1.0), ipopt=ends).benchmark(sizes=(40,), repeat=1))
+    assert one["auto_both"] == pytest.approx(1.0)
+    assert (one["ipopt_solve"], one["ipopt_both"]) == (None, None)
+    assert section.pictures(Clock(bent, auto=lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0)).benchmark(repeat=1)) == ()
 
 
 def test_a_peer_with_a_worse_error_on_the_same_problem_does_not_count(bent):
@@ -173,37 +166,23 @@ def test_what_takes_too_long_is_not_repeated_and_not_exceeded(bent):
     assert list(found.omissions()) == [("auto", 160, "more than 1.5 s")]
 
 
-def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
+def test_a_refused_size_is_left_out_and_a_question_that_all_methods_refuse_is_refused(bent):
     refused = SceneError([Mistake("contacts.contact.paper", "2 joints", "3")])
     found = Clock(bent, paper=lambda n: refused if n == 40 else power(1.0)(n)).benchmark(repeat=2)
     assert [timing.n for timing in found.rows()] == [80, 160]
     why = "contacts.contact.paper: found 2 joints; allowed: 3"
     assert list(found.omissions()) == [("paper", 40, why)]
     assert ("paper", "40", why) in section.tables_of(found)[-1].rows
-
-
-def test_what_everybody_refuses_is_refused(bent):
     refused = SceneError([Mistake("beams", "none", "some")])
     with pytest.raises(SceneError, match="beams"):
         Clock(bent, auto=lambda n: refused, fea=lambda n: refused).benchmark(repeat=1).rows()
 
 
-def test_an_interrupted_session_has_what_was_done(bent):
-    session = Clock(bent, auto=power(1.0), fea=power(1.0)).session(repeat=2)
-    for job in session.jobs()[:3]:
-        session.do(job)
-    assert [(timing.contender.name, timing.n) for timing in session.rows()] == [("auto", 40), ("auto", 80), ("fea", 40)]
-    assert {why for *_, why in session.omissions()} == {"interrupted"}
-
-
-def test_numbers_by_beam_are_a_size_like_another(bent):
+def test_sizes_end_with_the_method_and_may_be_numbers_by_beam(bent):
     found = Clock(bent, auto=power(1.0), paper=power(1.0)).benchmark(sizes=(20, FEW), repeat=1)
     assert [timing.n for timing in found.rows("auto")] == [20.0, 35.0]
     assert section.size_text(FEW) == "30, 40"
     assert section.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
-
-
-def test_the_usual_sizes_end_where_a_method_does():
     auto, paper, fea = contenders(Solvers(), Choices())
     assert [sizes_of(one, ())[-1] for one in (auto, paper, fea)] == [5120, 640, 1280]
     assert sizes_of(replace(auto, largest=80), ()) == (10, 20, 40, 80)
@@ -262,14 +241,7 @@ def test_ratios_are_of_solves_and_of_both(bent):
     assert headers == ("N", "AUTO", "SLSQP", "IPOPT, solve", "IPOPT, both", "iterations per station")
 
 
-def test_a_method_that_does_not_count_has_no_ratio(bent):
-    ends = lambda n: (0.0, 1e-6, 5, "GAVE_UP", 0.0)  # noqa: E731
-    (one,) = ratios(Clock(bent, auto=power(1.0), paper=power(1.0), ipopt=ends).benchmark(sizes=(40,), repeat=1))
-    assert one["auto_both"] == pytest.approx(1.0)
-    assert (one["ipopt_solve"], one["ipopt_both"]) == (None, None)
-
-
-def test_an_error_is_the_worst_of_its_measure_over_the_probe_or_a_thousandth_of_its_kind(bent):
+def test_an_error_is_the_worst_of_its_measure_over_the_size_of_the_probe(bent):
     off = {"B.displacement": np.array([1.0, 2e-3]), "D.displacement": np.array([1e-5, 0.0])}
     known = replace(
         KNOWN, values=frozendict({"B.displacement": np.array([1.0, 0.0]), "D.displacement": np.array([0.0, 0.0])})
@@ -277,6 +249,11 @@ def test_an_error_is_the_worst_of_its_measure_over_the_probe_or_a_thousandth_of_
     assert measures.errors(bent, known, off) == {"places": pytest.approx(1e-2)}
     assert measures.errors(bent, known, {}) == {}
     assert measures.uncertainties(bent, KNOWN) == {"places": 0.0, "forces": pytest.approx(5e-8)}
+    known = replace(KNOWN, values=frozendict({"B.displacement": np.zeros(2)}))
+    longest = max(geometry.length(beam.curve) for beam in bent.beams.values())
+    # 1e-4 of the longest beam is the least
+    off = {"B.displacement": np.array([0.0, 3e-13 * longest])}
+    assert measures.errors(bent, known, off) == {"places": pytest.approx(3e-9)}
 
 
 def test_the_reference_is_exact_or_extrapolated(bent):
@@ -294,14 +271,6 @@ def test_the_reference_is_exact_or_extrapolated(bent):
         Solvers(cprbm=lambda scene, choices: replace(right(scene, choices), ending=Ending.NOT_CERTIFIED), fea=right),
     )
     assert ended.values == {}
-
-
-def test_an_error_of_what_vanishes_altogether_is_told_by_the_size_of_the_mechanism(bent):
-    known = replace(KNOWN, values=frozendict({"B.displacement": np.zeros(2)}))
-    longest = max(geometry.length(beam.curve) for beam in bent.beams.values())
-    # 1e-4 of the longest beam is the least
-    off = {"B.displacement": np.array([0.0, 3e-13 * longest])}
-    assert measures.errors(bent, known, off) == {"places": pytest.approx(3e-9)}
 
 
 def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
@@ -325,10 +294,6 @@ def test_the_document_has_the_documented_keys(bent):
     assert data["rows"][0]["error"] == pytest.approx(1e-3)
     assert data["rows"][0]["force_error"] == pytest.approx(1e-2)
     assert [found["exponent"] for found in data["trends"]] == pytest.approx([1.2, 0.9])
-
-
-def test_nothing_that_counts_has_no_figure(bent):
-    assert section.pictures(Clock(bent, auto=lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0)).benchmark(repeat=1)) == ()
 
 
 def test_the_machine_is_described():
@@ -359,13 +324,6 @@ def test_bench_prints_writes_and_ends_with_0(right, capsys, tmp_path):
         assert (tmp_path / "out" / "hinge" / f"{name}.png").is_file()
 
 
-def test_bench_keeps_standard_output_for_json_and_asks_one_method_if_told(right, capsys):
-    arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--method", "fea", "--json", "-"]
-    assert run(arguments, right) == 0
-    data = json.loads(capsys.readouterr().out)
-    assert {row["method"] for row in data["rows"]} == {"fea"}
-
-
 def test_bench_runs_the_real_ones_beside_the_peers(capsys):
     arguments = ["bench", "hinge", "--sizes", "20", "--repeat", "1", "--method", "paper", "--method", "slsqp"]
     assert run([*arguments, "--json", "-"]) == 0
@@ -387,16 +345,13 @@ def test_all_stations_are_asked_without_the_peers(right, capsys):
     assert [(one["method"], one["n"]) for one in data["left_out"]] == [("ipopt", None)]
 
 
-def test_without_casadi_ipopt_is_left_out_with_a_line(right, capsys, monkeypatch):
+def test_peers_that_cannot_take_part_are_left_out_with_a_line(right, capsys, monkeypatch):
     monkeypatch.setattr("benchmarks.peers.ipopt.there", lambda: False)
     arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--method", "auto", "--method", "ipopt"]
     assert run(arguments, right) == 0
     assert "CasADi is not installed (the extra 'peers')" in capsys.readouterr().out
     assert run(["bench", "hinge", "--method", "ipopt"], right) == 2
     assert "CasADi is not installed" in capsys.readouterr().err
-
-
-def test_a_scene_that_paper_does_not_offer_leaves_the_peers_out_with_a_line(right, capsys):
     arguments = ["bench", "prestressed", "--sizes", "40", "--repeat", "1", "--method", "auto", "--method", "slsqp"]
     assert run([*arguments, "--json", "-"], right) == 0
     (left_out,) = json.loads(capsys.readouterr().out)["left_out"]
@@ -427,7 +382,7 @@ def test_an_interrupted_bench_keeps_what_was_finished(right, capsys, tmp_path):
     assert run(arguments, Solvers(right.cprbm, interrupted)) == 130
     data = json.loads((tmp_path / "hinge" / "bench.json").read_text("utf-8"))
     assert [(row["n"], row["repeats"]) for row in data["rows"]] == [(40, 1)]
-    assert [one["n"] for one in data["left_out"]] == [80]
+    assert [(one["n"], one["why"]) for one in data["left_out"]] == [(80, "interrupted")]
 
 
 def test_a_wrong_option_is_named(right, capsys):

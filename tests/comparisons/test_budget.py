@@ -29,8 +29,8 @@ def budget_at(scene, solvers, choices=None, probe="BD.rotation") -> Budget:
     return found
 
 
-def test_each_part_is_the_planted_one(hinge):
-    """v_c = 1.004/1.001, v_f = 1 − 0.008/4 + 0.0005: the links' share, the fault, and so on."""
+def test_each_part_is_the_planted_one_and_the_contact_is_a_part_of_paper(hinge):
+    # v_c = 1.004/1.001, v_f = 1 − 0.008/4 + 0.0005: the links' share, the fault, and so on.
     solvers = Solvers(MadeUp("cprbm", 4e-3, stiffness=1.001, paper=3e-3), MadeUp("fea", -8e-3, penalty=5e-4))
     found = budget_at(hinge, solvers)
     rotation, sign = 0.9 * LOAD, 1.0
@@ -46,9 +46,6 @@ def test_each_part_is_the_planted_one(hinge):
         assert part == pytest.approx(rotation * expected[name], rel=1e-9, abs=1e-15), name
     assert found.paper == pytest.approx(sign * rotation * 3e-3 / 1.001, rel=1e-9)
     assert found.off_line < 1e-15
-
-
-def test_where_paper_was_chosen_the_contact_is_a_part(hinge):
     solvers = Solvers(MadeUp("cprbm", 4e-3, paper=3e-3), MadeUp("fea", 0.0))
     found = budget_at(hinge, solvers, Choices(formulation="paper"))
     rotation = 0.9 * LOAD
@@ -74,12 +71,14 @@ def test_all_runs_of_a_budget_have_one_theory(hinge, right, theory):
     assert sum(found.parts.values()) == pytest.approx(found.row.difference, rel=1e-9)
 
 
-def test_no_difference_has_no_parts(hinge):
+def test_no_difference_has_no_parts_and_no_picture(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
     found = budget_at(hinge, same, Choices())
     assert found.row.difference == 0.0
     assert set(found.parts.values()) == {0.0}
     assert found.all_parts == 0.0
+    same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
+    assert budget_figures(account_of(hinge, Choices(), AnswerMemory(solvers=same))) == ()
 
 
 def test_parts_that_cancel_are_told_along_the_value(hinge):
@@ -190,16 +189,13 @@ def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
     assert budget_figures(account) == ()
 
 
-def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
+def test_the_table_has_every_probe_at_the_last_station_and_the_json_every_station(hinge, right):
     table = budget_table(account_of(hinge, Choices(), AnswerMemory(solvers=right)))
     assert [row[0] for row in table.rows] == [probe.name for probe in hinge.probes]
     signs = dict(zip(table.headers, table.rows[2], strict=True))
     # the limit of the rotation is 0.8·0.67 + 0.02, of which the first part has errors of 0.2 % and −0.0125 %
     assert (signs["links"], signs["elements"]) == ("+0.193", "+0.0121")
     assert "contact" not in table.headers
-
-
-def test_json_has_every_station_and_sums(hinge, right):
     account = account_of(hinge, Choices(), AnswerMemory(solvers=right))
     data = json.loads(text_of(data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
@@ -222,11 +218,6 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
         shown = any(each.parts[name] != 0.0 for each in account.budgets)
         assert (colour.encode() in picture.svg) == shown or name == "contact", name
     assert not any(each.parts["contact"] for each in account.budgets)
-
-
-def test_a_case_without_differences_has_no_picture(hinge):
-    same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
-    assert budget_figures(account_of(hinge, Choices(), AnswerMemory(solvers=same))) == ()
 
 
 def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):
@@ -259,18 +250,15 @@ def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys
 # -- The curved beam's inner edge
 
 
-def test_the_inner_edge_factor_is_the_quotient_of_the_two_stresses():
-    """σ_i = M (r_n − r_i)/(A e r_i) and 6 M/(w t²), with R = M = w = 1."""
+def test_the_inner_edge_factor_is_the_quotient_of_both_stresses_of_plane_sections():
+    # σ_i = M (r_n − r_i)/(A e r_i) and 6 M/(w t²), with R = M = w = 1.
     for t in (0.02, 0.08, 0.1999, 0.2001, 0.5, 1.0, 1.9):
         r_i, r_o = 1.0 - 0.5 * t, 1.0 + 0.5 * t
         r_n = t / math.log(r_o / r_i)
         curved = (r_n - r_i) / (t * (1.0 - r_n) * r_i)
         # where the beam is slender, 1 − r_n loses digits here
         assert inner_edge_factor(np.array([t]))[0] == pytest.approx(curved / (6.0 / t**2), rel=1e-13 / t**2), t
-
-
-def test_the_inner_edge_factor_is_of_sections_that_stay_plane():
-    """Winkler's assumption and no more: ε = a + b/r without a force, its moment about R = 1 being 1, by quadrature."""
+    # Winkler's assumption and no more: ε = a + b/r without a force, its moment about R = 1 being 1, by quadrature.
     points, weights = np.polynomial.legendre.leggauss(40)
     for bentness in (0.08, 1.0):
         r = 1.0 + 0.5 * bentness * points

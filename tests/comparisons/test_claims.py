@@ -85,11 +85,8 @@ def test_a_claim_of_a_force_is_of_the_value_there(quantity):
     assert claim_met(Claim(probe=small.probe.name, bound=0.01), small) is False
 
 
-def test_of_a_force_that_vanishes_it_is_of_the_stages_largest():
+def test_a_claim_of_a_vanishing_force_is_of_the_stages_largest_and_of_a_place_of_the_beam():
     assert claim_difference(row(0.9, 0.5)) == pytest.approx(0.004)
-
-
-def test_a_place_is_measured_by_the_beam():
     assert claim_difference(row(10.2, 10.0, quantity="centre")) == pytest.approx(0.002)
 
 

@@ -200,12 +200,9 @@ def test_a_stated_unit_has_no_prefix_by_size(scene, unit, size, factor, name):
     assert formats.display_unit(scene, unit, size) == (pytest.approx(factor, rel=1e-15), name)
 
 
-def test_without_a_stated_unit_a_table_has_one_prefix_for_the_largest_value(hinge):
+def test_units_are_stated_by_the_file_or_one_prefix_for_the_largest_value_of_a_table(hinge, scene):
     sizes = [("m", 0.02), ("m", 3e-6), ("Pa", 2e7), ("rad", 0.1)]
     assert formats.display_units(hinge, sizes) == {"m": (1e-3, "mm"), "Pa": (1e6, "MPa"), "rad": (1.0, "rad")}
-
-
-def test_units_are_no_part_of_the_question(scene):
     in_si = Scene(**dict(scene))
     assert in_si == scene
     assert formats.load_text(in_si, "bend", math.radians(45.0)) == "0.785398 rad (45.00°)"

@@ -94,7 +94,7 @@ def test_the_penetration_falls_with_the_fourth_power_and_is_never_large():
     assert (Choices().of_size(20).links, Choices().of_size(20).elements) == (20, 20)
 
 
-def test_a_contact_that_is_open_at_some_sizes_is_followed_from_where_it_is_closed(hinge, right):
+def test_a_contact_that_is_open_at_some_sizes_or_at_every_size(hinge, right):
     opened = _changed(right.cprbm, _with_value("contact.force", [0.0]), at_most=10)
     family = _family(_found(hinge, Solvers(opened, right.fea)), "contact.force")
     assert family.used == (20, 40, 80)
@@ -102,9 +102,6 @@ def test_a_contact_that_is_open_at_some_sizes_is_followed_from_where_it_is_close
     opened = _changed(right.cprbm, _with_value("contact.centre", []), at_most=40)
     family = _family(_found(hinge, Solvers(opened, right.fea)), "contact.centre")
     assert (family.used, family.found, family.why) == ((80,), None, "the contact is open at N = 40")
-
-
-def test_a_contact_that_is_open_at_every_size_has_no_order(hinge, right):
     found = _found(hinge, right)
     first = hinge.stages[0].stations[0]
     assert (_family(found, "contact.force", first).why, _family(found, "contact.force", first).found.order) == (
@@ -114,7 +111,7 @@ def test_a_contact_that_is_open_at_every_size_has_no_order(hinge, right):
     assert _family(found, "contact.centre", first).found is None
 
 
-def test_a_run_that_is_not_whole_is_left_out_and_told(hinge, right):
+def test_runs_that_are_not_whole_are_left_out_and_told(hinge, right):
     ended = _changed(
         right.cprbm,
         lambda answer: replace(answer, ending=Ending.STEP_TOO_SMALL, stations=answer.stations[:2]),
@@ -129,9 +126,6 @@ def test_a_run_that_is_not_whole_is_left_out_and_told(hinge, right):
     entry = next(one for one in tables.document(found)["families"] if one["probe"] == "BD.rotation")
     assert entry["values"][0] is None
     assert entry["errors"][0] is None
-
-
-def test_nothing_is_told_of_values_where_no_run_is_whole(hinge, right):
     broken = _changed(right.cprbm, lambda answer: replace(answer, stations=answer.stations[:2]), at_most=9999)
     found = _found(hinge, Solvers(broken, _changed(right.fea, lambda a: replace(a, stations=()), at_most=9999)))
     assert found.families == ()
@@ -159,7 +153,7 @@ def test_the_exact_values_stand_beside_where_they_are_known(hinge, right):
     assert tables.tables_of(found)[0].headers[-1] == "CPRBM limit from exact"
 
 
-def test_the_document_has_the_keys_that_are_promised(hinge, right):
+def test_the_document_has_the_promised_keys_and_the_tables_have_whole_rows(hinge, right):
     data = json.loads(text_of(tables.document(_found(hinge, right))))
     assert data["case"] == "hinge"
     entry = next(one for one in data["families"] if one["probe"] == "B.displacement" and one["component"] == "y")
@@ -169,9 +163,6 @@ def test_the_document_has_the_keys_that_are_promised(hinge, right):
         assert entry[key] is not None
     assert entry["settings"]["kinematics"] == "bending"
     assert len(data["runs"]) == 2 * len(SIZES)
-
-
-def test_every_table_has_as_many_cells_as_headers(hinge, right):
     for sheet in tables.tables_of(_found(hinge, right)):
         assert sheet.rows
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
@@ -217,7 +208,7 @@ def test_an_interruption_keeps_what_was_finished(right, capsys, tmp_path):
     assert len(json.loads((tmp_path / "c.json").read_text("utf-8"))["cases"]) == 1
 
 
-def test_an_offset_question_shows_its_error_against_the_exact_curve(capsys, tmp_path):
+def test_an_offset_question_shows_its_error_against_the_exact_curve_at_the_allowed_sizes(capsys, tmp_path):
     assert run(["converge", "offset", "--sizes", "3,10,20,40,400", "--json", str(tmp_path / "c.json")], Solvers()) == 0
     assert "offset: An offset question takes 4 to 200 springs; left out: 3, 400." in capsys.readouterr().out
     families = json.loads((tmp_path / "c.json").read_text("utf-8"))["families"]
@@ -228,8 +219,5 @@ def test_an_offset_question_shows_its_error_against_the_exact_curve(capsys, tmp_
         expected = 2.0 if family["settings"]["spacing"] == "even-elements" else 4.0
         assert family["order"] == pytest.approx(expected, abs=0.25)
         assert family["exact"] == 0.0
-
-
-def test_an_offset_question_of_which_no_two_sizes_can_be_asked_is_told(capsys):
     assert run(["converge", "offset", "--sizes", "100,400"], Solvers()) == 0
     assert "left out: 400" in capsys.readouterr().out

@@ -145,20 +145,6 @@ def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path,
         assert same_files(whole, out)
 
 
-@pytest.mark.parametrize("command", ["bench", "solve"])
-def test_a_folder_that_takes_no_files_is_a_sentence_before_anything_is_solved(asked, capsys, command):
-    """The folder of the system's tables refuses all users."""
-
-    def unasked(scene, choices):
-        raise AssertionError("solved before the place was known to be wrong")
-
-    where = ["--json", "/proc/cprbm/x.json"] if command == "solve" else ["--out", "/proc/cprbm"]
-    assert run([command, asked[0], "--quiet", *where], Solvers(unasked, unasked)) == 2
-    said = capsys.readouterr().err
-    assert said.startswith("cprbm: Cannot write /proc/cprbm")
-    assert said.count("\n") == 1
-
-
 @pytest.mark.parametrize("library", ["matplotlib", "jinja2", "rich"])
 def test_a_library_that_is_not_there_is_named_with_what_installs_it(tmp_path, asked, monkeypatch, capsys, library):
     for module in [name for name in sys.modules if name.partition(".")[0] == library]:
@@ -258,12 +244,9 @@ def running(pid):
         return False
 
 
-def test_what_is_called_is_called_in_another_process():
+def test_a_call_runs_in_another_process_and_its_value_or_exception_comes_back():
     assert call_fresh(os.getpid) != os.getpid()
     assert call_fresh(math.hypot, 3.3, 5.6) == 6.5
-
-
-def test_what_it_raises_is_raised_here():
     with pytest.raises(ValueError, match="math domain error"):
         call_fresh(math.sqrt, -0.3)
 
@@ -272,14 +255,6 @@ def test_what_it_raises_is_raised_here():
 def test_one_that_ends_by_force_is_told_of(ends, by, with_):
     with pytest.raises(WorkerDiedError, match=f"ended with {with_}$"):
         call_fresh(ends, by)
-
-
-def test_no_semaphores_are_needed(monkeypatch):
-    def refused(*_):
-        raise OSError(13, "Permission denied")
-
-    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
-    assert call_fresh(math.floor, 7.9) == 7
 
 
 def test_an_interrupt_ends_it(monkeypatch):

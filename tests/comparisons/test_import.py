@@ -167,11 +167,6 @@ def test_only_a_geo_file_is_run_as_a_program(tmp_path, capsys, name, text, words
     assert sorted(file.name for file in tmp_path.iterdir()) == [name]
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path, capsys):
-    assert run(["import", str(tmp_path / "no.geo"), "--thickness", "1", "--width", "9"]) == 2
-    assert "no.geo' does not exist" in capsys.readouterr().err
-
-
 def test_layers_and_files_keep_their_accents(tmp_path):
     path = tmp_path / "3 Träger.csv"
     path.write_text("x,y\n0,0\n30,1\n60,0\n", encoding="utf-8")
@@ -197,10 +192,13 @@ def test_points_of_a_circle_are_an_arc(first, turn):
     assert made.curve.direction == ("counterclockwise" if turn > 0.0 else "clockwise")
 
 
-def test_what_is_nearly_a_circle_is_none():
+def test_points_of_no_exact_circle_make_a_spline_and_a_corner_makes_none():
     angle = np.linspace(0.2, 1.7, 301)
     p = np.stack([3.0 * np.cos(angle), 3.00003 * np.sin(angle)], axis=1)
     assert isinstance(fit(p, None, 1e-5).curve, Spline)
+    t = np.linspace(0.0, 1.0, 201)
+    p = np.concatenate([np.stack([t, 0.0 * t], axis=1), np.stack([1.0 + 0.0 * t[1:], t[1:]], axis=1)])
+    assert fit(p, None, 1e-9) is None
 
 
 def test_a_spline_is_as_near_as_it_says():
@@ -217,9 +215,3 @@ def test_a_spline_is_as_near_as_it_says():
     true = float(np.max(np.abs(py - np.sin(px)) / np.hypot(1.0, np.cos(px))))
     chord = (3.7 / 8000) ** 2 / 8.0  # measured against a polyline, whose height over a chord is κh²/8 with κ ≤ 1
     assert made.deviation == pytest.approx(true, abs=chord)
-
-
-def test_a_corner_is_no_spline():
-    t = np.linspace(0.0, 1.0, 201)
-    p = np.concatenate([np.stack([t, 0.0 * t], axis=1), np.stack([1.0 + 0.0 * t[1:], t[1:]], axis=1)])
-    assert fit(p, None, 1e-9) is None

@@ -101,12 +101,9 @@ def test_the_program_writes_table_and_drawing(right, tmp_path, command):
     assert b"<svg" in drawing.read_bytes()
 
 
-def test_two_designs_share_a_drawing(right, tmp_path):
+def test_a_drawing_of_two_designs_and_of_an_unknown_kind(right, tmp_path, capsys):
     drawing = tmp_path / "two.svg"
     assert run(["compare", "hinge", "tapered", "-q", "--plot", str(drawing)], right) == 0
     assert b"<svg" in drawing.read_bytes()
-
-
-def test_a_drawing_of_unknown_kind_is_refused_before_anything_is_solved(right, tmp_path, capsys):
     assert run(["compare", "hinge", "--plot", str(tmp_path / "a.tiff")], right) == 2
     assert "allowed: a name that ends in .svg or .png" in capsys.readouterr().err

@@ -43,34 +43,25 @@ def small(tmp_path):
     return str(path)
 
 
-def test_the_exact_offset_of_an_arc_is_an_arc():
+def test_the_exact_offset_of_an_arc_and_of_the_parabola(question):
     arc = Arc(kind="arc", center=(0.0, 0.0), start=(-3.0, 4.0), end=(3.0, 4.0), direction="clockwise")
     x = np.linspace(-2.9, 2.9, 31)
     assert ordinates(arc, x, 1.5, along_x=True) == pytest.approx(np.sqrt(6.5**2 - x**2), rel=1e-13)
     assert ordinates(arc, x[5:-5], -1.5, along_x=True) == pytest.approx(np.sqrt(3.5**2 - x[5:-5] ** 2), rel=1e-13)
-
-
-def test_the_exact_offset_of_the_parabola_is_its_parametric_one(question):
     v = np.linspace(-9.99, 9.99, 57)
     speed = np.hypot(1.0, 0.12 * v)
     for t in (1.0, 20.0, -8.0):
         x, y = v + t * 0.12 * v / speed, 10.0 - 0.06 * v**2 + t / speed
         assert ordinates(question.curve, x, t, along_x=True) == pytest.approx(y, rel=1e-12), t
-
-
-def test_beyond_the_exact_curves_ends_there_is_no_ordinate(question):
     end = offset_curve(question.curve, np.array([1.0]), 5.0)[0]
     found = ordinates(question.curve, end[0] + np.array([-0.1, 0.1]), 5.0, along_x=True)
     assert np.isfinite(found[0])
     assert np.isnan(found[1])
 
 
-def test_the_construction_agrees_with_the_curves_own_normals(compared):
+def test_the_construction_agrees_and_states_little_more_than_its_error(compared):
     assert compared.verdict.word is Word.AGREE
     assert len(compared.rows) == 4 * 25 * 20
-
-
-def test_what_is_stated_is_not_far_more_than_the_error(compared):
     rows = [row for row in compared.rows if row.spacing.startswith("sine")]
     assert np.median([np.max(row.stated) / row.difference for row in rows]) < 3.0
 
@@ -150,7 +141,7 @@ def test_what_needs_an_equilibrium_says_so(capsys):
         assert "no equilibrium" in capsys.readouterr().err
 
 
-def test_a_wrong_question_is_refused_by_its_key():
+def test_a_wrong_question_is_refused_by_its_key(question):
     for key, value, named, said in (
         ("side", "right", "offsets[8]", "radius of curvature"),
         ("side", "up", "side", "'left' or 'right'"),
@@ -172,14 +163,8 @@ def test_a_wrong_question_is_refused_by_its_key():
         found = {mistake.key: str(mistake) for mistake in error.value.mistakes}
         assert named in found, (key, value)
         assert said in found[named]
-
-
-def test_spacings_must_be_given():
     with pytest.raises(SceneError, match="spacings"):
         offset_from({key: value for key, value in DATA.items() if key != "spacings"})
-
-
-def test_the_lower_side_is_no_graph_from_the_cusp_on(question):
     # smallest radius of curvature of y = 10 − 0.06 x²: 1/0.12
     data = {**DATA, "side": "right", "shown": {"numbers": [5], "offsets": [1.0]}}
     assert isinstance(offset_from({**data, "offsets": [8.3]}), OffsetQuestion)

@@ -93,13 +93,11 @@ def test_without_a_common_station_no_other_run_is_waited_for(hinge, tmp_path, wo
     assert "it ended early" in verdict.because
 
 
-def test_a_critical_value_keeps_all_runs(hinge, tmp_path):
+def test_a_critical_value_and_a_failed_helper_run_keep_all_runs(hinge, tmp_path, right):
     critical = (Critical("load", 0.1, 1e-6, Loss.FOLD, "", 0.0, 0.0, 1.0, None),)
     solvers = Solvers(Noted("cprbm", tmp_path, critical), Noted("fea", tmp_path, critical))
     assert len(paired(hinge, Choices(), solvers).same_theory) == 6
 
-
-def test_a_helper_run_that_fails_stays_among_the_runs(hinge, right):
     def coarse(scene, choices):
         answer = right.cprbm(scene, choices)
         return answer if choices.links == 40 else replace(answer, ending=Ending.STEP_TOO_SMALL, stations=())
@@ -216,11 +214,14 @@ def test_two_processes_give_the_answers_of_one(hinge, right, monkeypatch, semaph
             }
 
 
-def test_a_refusal_leaves_the_processes_to_the_next_question(hinge, right):
+def test_a_refusal_keeps_its_words_and_leaves_the_processes_to_the_next_question(hinge, right):
     with crew_of(2) as crew:
         with pytest.raises(SceneError):
             paired(hinge, Choices(), Solvers(Refusing(), right.fea), crew)
         assert paired(cases.opened("wrapped"), Choices(), right, crew).answers["fea"].scene == "wrapped"
+    with crew_of(2) as crew, pytest.raises(SceneError) as caught:
+        paired(hinge, Choices(), Solvers(MadeUp("cprbm", 0.0), Refusing()), crew)
+    assert caught.value.mistakes == (Mistake("beams.beam1", "a beam", "another beam", "file.toml"),)
 
 
 def killed(scene, choices):
@@ -239,12 +240,6 @@ class Refusing:
 
     def __call__(self, scene, choices):
         raise SceneError([Mistake("beams.beam1", "a beam", "another beam", "file.toml")])
-
-
-def test_a_refusal_keeps_its_words(hinge):
-    with crew_of(2) as crew, pytest.raises(SceneError) as caught:
-        paired(hinge, Choices(), Solvers(MadeUp("cprbm", 0.0), Refusing()), crew)
-    assert caught.value.mistakes == (Mistake("beams.beam1", "a beam", "another beam", "file.toml"),)
 
 
 @pytest.mark.parametrize("links", [{"beam1": 30}, {"beam1": 30, "beam2": 30, "beam3": 30}, {}])

@@ -101,11 +101,6 @@ def test_sentences_stand_in_the_bar_s_place(on_a_terminal):
     assert re.fullmatch(r"cprbm: hinge: cprbm, stage load: station 1 of 10, M = 0\.067, \d+ iterations?", lines[0])
 
 
-def test_without_a_terminal_nothing_is_said(right, capsys):
-    assert run(["compare", "hinge", "--quiet"], right) == 0
-    assert capsys.readouterr().err == ""
-
-
 def test_a_comparison_says_which_of_its_runs_are_done_and_then_nobody_listens(right, capsys):
     assert run(["compare", "hinge", "--quiet", "-v"], right) == 0
     lines = capsys.readouterr().err.splitlines()

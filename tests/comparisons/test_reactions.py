@@ -102,16 +102,13 @@ def of_one_solver(scene, solver, choices=COARSE):
 # The perturbed scene
 
 
-def test_two_stations_surround_every_station_and_a_stage_ends_where_the_scenes_stage_ends():
+def test_the_perturbed_scene_has_two_stations_around_every_station_and_its_own_probes():
     scene = perturbed_scene(driven(("push", (0.001, 0.002)), ("pull", (0.5,)), ("push", (-0.004, 0.0))))
     push, pull, back = (stage.stations for stage in scene.stages)
     np.testing.assert_allclose(push, [0.000998, 0.001002, 0.001996, 0.002004, 0.002], rtol=1e-12)
     assert pull == (0.5,)
     np.testing.assert_allclose(back, [-0.004008, -0.003992, -8e-6, 8e-6, 0.0], rtol=1e-12)
     assert push[-1] == 0.002  # exactly: the next stage begins there
-
-
-def test_the_perturbed_scene_has_the_energy_and_the_multipliers_as_probes():
     scene = driven(("push", (0.001,)))
     fewer = tuple(probe for probe in scene.probes if probe.quantity != "potential_energy")
     names = [probe.name for probe in perturbed_scene(scene.model_copy(update={"probes": fewer})).probes]

@@ -122,13 +122,6 @@ def test_study_without_a_name_lists_the_studies(capsys):
     assert names == ["calibration", "relations", "table1"]
 
 
-def test_an_unknown_study_is_refused_with_those_that_there_are(capsys):
-    assert run(["study", "table"]) == 2
-    said = capsys.readouterr().err
-    assert "'table'" in said
-    assert "calibration, relations, table1" in said
-
-
 @pytest.mark.usefixtures("printed")
 def test_table1_writes_a_page_numbers_and_a_figure(capsys, tmp_path, three_cells):
     out = tmp_path / "new" / "out"
@@ -181,16 +174,3 @@ def test_a_solve_that_does_not_complete_ends_with_1(capsys):
     captured = capsys.readouterr()
     assert "STEP_TOO_SMALL" in captured.out
     assert "It fell short." in captured.out
-
-
-def test_a_place_that_cannot_be_written_is_found_before_anything_is_solved(tmp_path, capsys):
-    (tmp_path / "file").write_text("")
-    solvers = quick()
-    assert run(["study", "table1", "--out", str(tmp_path / "file" / "out")], solvers) == 2
-    assert solvers.cprbm.solves == 0
-
-
-def test_a_wrong_option_is_named(capsys):
-    for arguments, said in ((["--repeat", "0"], "'0'"), (["--at-most", "nan"], "'nan'")):
-        assert run(["study", "table1", *arguments], quick()) == 2, arguments
-        assert said in capsys.readouterr().err

@@ -41,14 +41,11 @@ def test_a_number_keeps_its_digits_and_no_small_number_reads_as_zero(fraction, s
     assert re.search("[1-9]", percent(fraction))
 
 
-def test_zero_missing_and_absent_values_have_their_own_texts():
+def test_texts_of_zero_of_missing_values_and_of_units():
     assert percent(0.0) == "0 %"
     assert percent(None) == percent(math.nan) == "–"
     assert vector(np.empty(0), 1.0) == "open"
     assert vector(np.array([-3.0, 2.0, 1.0, 0.0]), 1.0) == "max 3.0000"
-
-
-def test_a_unit_takes_the_prefix_of_a_power_of_a_thousand():
     assert scaled_unit("m", 0.0123) == (1e-3, "mm")
     assert scaled_unit("Pa", 3.4e7) == (1e6, "MPa")
     assert scaled_unit("rad", 1e-3) == (1.0, "rad")

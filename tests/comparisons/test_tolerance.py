@@ -110,7 +110,7 @@ def test_a_tolerance_is_a_percentage_or_a_fraction():
         assert tolerance(click.Context(solve), solve.params[0], text) == pytest.approx(1e-3), text
 
 
-def test_solve_says_in_json_how_n_was_found(right, capsys):
+def test_solve_and_compare_say_how_n_was_found(right, capsys, tmp_path):
     assert run(["solve", "hinge", "--tol", "0.1%", "--json", "-"], right) == 0
     found = json.loads(capsys.readouterr().out)["cases"][0]["solvers"]["cprbm"]["tolerance"]
     assert found["asked"] == pytest.approx(1e-3)
@@ -118,6 +118,13 @@ def test_solve_says_in_json_how_n_was_found(right, capsys):
     assert found["extrapolated"] == [20, 40]
     assert found["solved"] == [10, 11, 20, 23, 40]
     assert (found["links"], found["elements"], found["met"]) == (40, None, True)
+    file = tmp_path / "numbers.json"
+    assert run(["compare", "hinge", "--tol", "0.1%", "--json", str(file)], right) == 0
+    assert "N for 0.100 %: cprbm 40, fea 80." in capsys.readouterr().out
+    solvers = json.loads(file.read_text("utf-8"))["cases"][0]["solvers"]
+    assert solvers["cprbm"]["tolerance"]["links"] == 40
+    # in bending the made-up contact is still open at 0.201 N·m with 10 elements, and 10, 20 and 40 are not of one law
+    assert solvers["fea"]["tolerance"]["extrapolated"] == [40, 80]
 
 
 @pytest.mark.parametrize("command", ["solve", "compare"])
@@ -130,21 +137,11 @@ def test_another_tolerance_is_refused(right, capsys, command):
 
 @pytest.mark.parametrize("command", ["solve", "compare"])
 def test_a_tolerance_and_n_are_a_wrong_question(right, capsys, command):
-    for option in (["-n", "40"], ["--elements", "beam1=30,beam2=40"]):
+    for option in (["-n", "40"], ["--elements", "beam1=30,beam2=40"], ["--across", "3"]):
         assert run([command, "hinge", "--tol", "1%", *option], right) == 2, option
         captured = capsys.readouterr()
         assert captured.out == ""
         assert f"--tol and {option[0]}" in captured.err
-
-
-def test_compare_says_which_n_were_found(right, capsys, tmp_path):
-    file = tmp_path / "numbers.json"
-    assert run(["compare", "hinge", "--tol", "0.1%", "--json", str(file)], right) == 0
-    assert "N for 0.100 %: cprbm 40, fea 80." in capsys.readouterr().out
-    solvers = json.loads(file.read_text("utf-8"))["cases"][0]["solvers"]
-    assert solvers["cprbm"]["tolerance"]["links"] == 40
-    # in bending the made-up contact is still open at 0.201 N·m with 10 elements, and 10, 20 and 40 are not of one law
-    assert solvers["fea"]["tolerance"]["extrapolated"] == [40, 80]
 
 
 class Scattered(MadeUp):
@@ -246,16 +243,13 @@ def test_the_order_is_seen_on_three_meshes_and_assumed_on_two(hinge):
     assert (three.assumed, two.assumed, two.order) == (4.0, 2.0, None)
 
 
-def test_the_search_ends_at_its_bound_and_says_so(hinge):
+def test_the_search_ends_at_its_bound_or_where_no_mesh_would_do(hinge):
     scene = of_stage(hinge)
     solid = Falling(0.02, 1.1)
     _, found = solve_within(scene, "solid", Choices(), 1e-3, Solvers(solid=solid), lambda text: None)
     assert not found.met
     assert max(found.solved) == LARGEST["solid"]
     assert "N = 160 is the largest N" in found.sentence(hinge)
-
-
-def test_what_no_mesh_can_meet_is_not_looked_for_on_the_finest(hinge):
     solid = Falling(0.2, 1.1)
     _, found = solve_within(of_stage(hinge), "solid", Choices(), 1e-9, Solvers(solid=solid), lambda text: None)
     assert not found.met
@@ -315,8 +309,3 @@ def test_the_command_line_says_what_was_solved(hinge, right, capsys, tmp_path):
     assert found["met"]
     assert found["estimate"] <= 1e-2
     assert {row["probe"] for row in told["solid"]} == {row["probe"] for row in told["rows"]}
-
-
-def test_a_tolerance_and_elements_across_are_a_wrong_question(right, capsys):
-    assert run(["solve", "hinge", "--solver", "solid", "--tol", "1%", "--across", "3"], right) == 2
-    assert "--tol and --across" in capsys.readouterr().err

@@ -67,14 +67,11 @@ def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
     assert data["tolerance"] is None
 
 
-def test_an_installed_package_lists_no_tools(installed, tmp_path):
+def test_an_installed_package_lists_no_tools_and_no_study_of_a_checkout(installed, tmp_path):
     done = _run(["--help"], installed, tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "compare" in done.stdout
     assert "robustness" not in done.stdout
-
-
-def test_an_installed_package_lists_no_study_of_a_checkout(installed, tmp_path):
     done = _run(["study"], installed, tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "calibration" in done.stdout

@@ -78,6 +78,11 @@ FILES = [
     (UNITS, 'units = { stress = "mpa" }', "units.stress: found 'mpa' (is 'MPa' meant?)"),
     (UNITS, 'units = { angle = "degree" }', "is 'deg' meant?"),
     (UNITS, 'units = { force = "mm" }', "units.force: found 'mm'; allowed: one of 'N', 'kN'"),
+    # between short words nothing is guessed: any two units are near each other
+    *(
+        (UNITS, f'units = {{ force = "{unit}" }}', f"units.force: found {unit!r}; allowed: one of 'N'")
+        for unit in ("M", "nm", "lb")
+    ),
     (UNITS, 'units = "mm"', "units: found 'mm'; allowed: a table, as units = {"),
     (
         "thickness = 1.1",
@@ -129,12 +134,16 @@ def folder(files, tmp_path, monkeypatch):
     return tmp_path
 
 
-def _unasked(scene, choices):
-    pytest.fail("solved before the question was read and the folders were made")
-
-
 def _said(arguments, capsys):
-    assert run(arguments, Solvers(_unasked, _unasked)) == 2
+    """The sentence on standard error; nothing is solved before the question is read and the folders are made."""
+    asked = []
+
+    def noting(scene, choices):
+        asked.append(scene.name)
+        raise RuntimeError
+
+    assert run(arguments, Solvers(noting, noting)) == 2
+    assert asked == []
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("cprbm: ")
@@ -186,24 +195,15 @@ def test_several_mistakes_have_a_line_each(folder, capsys):
         assert sum(part in line for line in lines) == 1
 
 
-@pytest.mark.parametrize("unit", ["M", "nm", "lb"])
-def test_between_short_words_nothing_is_guessed(unit, folder, capsys):
-    """Any two units are near each other: what was meant could be one or the other."""
-    path = Path("mine.toml")
-    text = path.read_text(encoding="utf-8")
-    path.write_text(text.replace(UNITS, f'units = {{ force = "{unit}" }}'), encoding="utf-8")
-    said = _said(["solve", "mine.toml"], capsys)
-    assert f"units.force: found {unit!r}; allowed: one of 'N'" in said
-
-
 @pytest.mark.parametrize(
     "arguments",
-    [["compare", "--out"], ["compare", "--json"], ["solve", "--json"], ["solve", "--csv"], ["converge", "--out"]],
+    [["compare hinge", "--out"], ["compare hinge", "--json"], ["solve hinge", "--json"], ["solve hinge", "--csv"],
+     ["converge hinge", "--out"], ["bench tapered", "--out"], ["study table1", "--out"]],
     ids=" ".join,
-)
+)  # fmt: skip
 def test_a_place_that_takes_no_file_is_a_sentence_before_any_solve(arguments, folder, capsys):
     command, option = arguments
-    said = _said([command, "hinge", "--quiet", option, str(folder / "in the way" / "numbers")], capsys)
+    said = _said([*command.split(), "--quiet", option, str(folder / "in the way" / "numbers")], capsys)
     assert said.startswith(f"cprbm: Cannot write {folder / 'in the way'}")
     assert said.count("\n") == 1
 

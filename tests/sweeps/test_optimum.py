@@ -80,13 +80,10 @@ def test_points_without_an_answer_are_avoided(scene):
     assert 2.0e-3 <= found["parameters"]["t"] < 2.01e-3
 
 
-def test_a_best_point_with_another_verdict_is_no_optimum(scene, capsys):
+def test_without_an_optimum_the_best_point_is_named_with_the_doubt(scene, capsys):
     code, found = optimised(scene, 'aim = "reach"\nvalue = 0.2\n', solvers=Solvers(fea=Stiff()))
     assert (code, found["optimum"], found["verdict"]) == (1, False, "DIFFER")
     assert "no optimum" in capsys.readouterr().out
-
-
-def test_limits_that_no_point_meets(scene):
     code, found = optimised(scene, 'aim = "maximise"\n' + LIMIT.replace("0.12", "0.001"))
     assert (code, found["doubt"]) == (1, "no start met all limits")
 

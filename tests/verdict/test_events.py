@@ -216,11 +216,19 @@ def test_stations_between_the_critical_angles_take_no_part(crank):
     assert set(counted(found)) == {"AGREE"}
 
 
-def test_a_fault_on_one_branch_differs_there_alone(crank):
+def test_a_fault_and_an_uncertainty_stay_on_their_branch(crank):
     soft = altered_on(1, C, replace(C, stiffness=1.02))
     found = compared(crank, soft, F)
     assert [each.word for each in found.verdict.branches] == [Word.AGREE, Word.DIFFER, Word.DIFFER, Word.AGREE]
     assert word_of(found) == "DIFFER VALUES"
+    # Four times the error on the second branch alone.
+    both = [compared(crank, one, F).rows for one in (C, altered_on(1, C, replace(C, error=4e-3)))]
+    stated = [
+        {row.branch: row.bounds.cprbm for row in rows if row.bounds and row.probe.quantity == "reaction_moment"}
+        for rows in both
+    ]
+    assert stated[1][0] == stated[0][0]
+    assert stated[1][1] == pytest.approx(4.0 * stated[0][1], rel=0.01)
 
 
 def altered_on(branch, solver, other):
@@ -230,17 +238,6 @@ def altered_on(branch, solver, other):
         return replace(first, stations=tuple(b if a.branch == branch else a for a, b in pairs))
 
     return answer
-
-
-def test_an_uncertainty_stays_on_its_branch(crank):
-    """Four times the error on the second branch alone."""
-    both = [compared(crank, one, F).rows for one in (C, altered_on(1, C, replace(C, error=4e-3)))]
-    stated = [
-        {row.branch: row.bounds.cprbm for row in rows if row.bounds and row.probe.quantity == "reaction_moment"}
-        for rows in both
-    ]
-    assert stated[1][0] == stated[0][0]
-    assert stated[1][1] == pytest.approx(4.0 * stated[0][1], rel=0.01)
 
 
 def test_a_mesh_that_jumps_early_states_no_jump_as_an_uncertainty(crank):
@@ -358,16 +355,13 @@ def test_mirror_images_behind_a_bifurcation_are_no_contradiction(crank, fea, wor
     assert word_of(found) == word, found.verdict.sentence
 
 
-def test_a_run_on_the_mirror_image_states_no_uncertainty(crank):
-    """The image is on the other side in the run at 2N: no uncertainty of twice the moment excuses a fault."""
+def test_mirror_images_behind_a_fold_differ_and_a_run_on_an_image_states_no_uncertainty(crank):
+    # The image is on the other side in the run at 2N: no uncertainty of twice the moment excuses a fault.
     image = only(replace(C, **BIFURCATES), replace(C, **BIFURCATES, side=-1.0), lambda choices: choices.links == 80)
     found = compared(crank, image, replace(F, **BIFURCATES))
     before, behind = ([each for each in found.verdict.branches if bool(each.number) is late] for late in (False, True))
     assert ({each.word for each in before}, {each.word for each in behind}) == ({Word.AGREE}, {Word.UNDECIDED})
     assert word_of(found) == "UNDECIDED BRANCH"
-
-
-def test_mirror_images_behind_a_fold_differ(crank):
     assert word_of(compared(crank, C, replace(F, side=-1.0))) == "DIFFER VALUES"
 
 

@@ -44,18 +44,12 @@ def test_the_size_of_the_hint_makes_the_limit(away, cprbm, fea, options):
         assert word_of(compared(away, cprbm, fea, choices)).split()[0] == word
 
 
-def test_the_sentence_names_the_row_that_decides(hinge):
+def test_the_sentence_names_the_row_that_decides_or_the_closest_row(hinge):
     found = compared(hinge, altered(C, with_value("BD.rotation", [0.9]), 0.67), F)
     assert found.verdict.because.startswith("1 of 126 rows differ, first of all BD.rotation at load 0.67 N·m: ")
     assert "--solver cprbm,fea,solid" in found.verdict.because
     assert found.verdict.sentence.startswith(found.verdict.because)
-
-
-def test_a_case_that_agrees_names_the_closest_row(hinge):
     assert compared(hinge, C, F).verdict.because.startswith("All 126 rows agree; the closest is ")
-
-
-def test_a_single_row_has_no_plural(hinge):
     (stage,) = hinge.stages
     stage = stage.model_copy(update={"stations": (0.67,), "shown": ()})
     probes = tuple(probe for probe in hinge.probes if probe.quantity == "rotation")

@@ -74,13 +74,19 @@ def test_where_the_error_changes_its_sign_the_stage_states_its_largest():
     assert found["twist"] == pytest.approx(S * 1.0 / 56**2, rel=1e-9)
 
 
-def test_a_constant_has_no_error():
+def test_a_constant_and_round_off_show_no_order_and_no_more_error_than_their_own():
     assert stated(THIRD, [0.2, 0.2, 0.2]) == (0.0, 0.0)
     found = limit(DOUBLED, np.zeros(6))
     assert (found.value[0], found.uncertainty[0], found.order) == (0.0, 0.0, None)
+    values = 3.0 + 1e-15 * np.array([1.0, -1.0, 0.0, 1.0, -1.0, 0.0])
+    found = limit(DOUBLED, values, 2.0, floor=1e-14)
+    assert found.order is None
+    assert found.why == "the change is round-off"
+    assert found.value == pytest.approx([3.0], abs=1e-14)
+    assert 1e-14 <= found.uncertainty[0] <= 2e-14
 
 
-def test_two_grids_state_the_index_of_order_two():
+def test_two_grids_state_the_index_of_order_two_or_of_a_known_first_order():
     # (v − V)/(1 − 1/4) = 0.4; the limit is 0.9; of order 1 it is V + (V − v) = 0.7, 0.2 away, and the correction is 0.1
     even, uneven = stated((20, 40), [1.3, 1.0], order=4.0)
     assert even == pytest.approx([S * 0.4])
@@ -89,13 +95,15 @@ def test_two_grids_state_the_index_of_order_two():
     assert found.value == pytest.approx([0.9])
     assert found.uncertainty == pytest.approx([S * 0.2])
     assert (found.order, found.assumed, found.why) == (None, 2.0, "two sizes show no order")
-
-
-def test_two_grids_of_a_known_first_order_state_their_correction():
     # as a penalty's error with the penetration: L = V + (V − v)/3 of sizes 4 and 16
     found = limit((4, 16), np.array([1.3, 1.0]), 1.0)
     assert found.value == pytest.approx([0.9])
     assert found.uncertainty == pytest.approx([S * 0.1])
+    # two sizes: from the limit by 7/N², and the limit is uncertain by S times 2/3 of the change
+    values = powers(2.0, (10, 20))
+    found = limit((10, 20), values)
+    own = S * 2 / 3 * 7.0 * (1 / 100 - 1 / 400)
+    assert np.abs(values - found.value) + found.uncertainty == pytest.approx(7.0 / np.array([100.0, 400.0]) + own)
 
 
 @pytest.mark.parametrize(
@@ -161,15 +169,6 @@ def test_an_uneven_error_lies_within_the_uncertainty_nearly_always():
     assert met >= 380
 
 
-def test_round_off_shows_no_order_and_leaves_what_it_leaves():
-    values = 3.0 + 1e-15 * np.array([1.0, -1.0, 0.0, 1.0, -1.0, 0.0])
-    found = limit(DOUBLED, values, 2.0, floor=1e-14)
-    assert found.order is None
-    assert found.why == "the change is round-off"
-    assert found.value == pytest.approx([3.0], abs=1e-14)
-    assert 1e-14 <= found.uncertainty[0] <= 2e-14
-
-
 @pytest.mark.parametrize(
     ("values", "why", "assumed"),
     [
@@ -207,14 +206,6 @@ def test_a_vector_converges_as_one():
     assert together.order == pytest.approx(2.0, abs=0.01)
     assert together.value.shape == together.uncertainty.shape == (2,)
     assert limit((10, 20, 40), values[:, 1]).order is None
-
-
-def test_the_error_of_each_size_counts_the_limits_own():
-    # two sizes: from the limit by 7/N², and the limit is uncertain by S times 2/3 of the change
-    values = powers(2.0, (10, 20))
-    found = limit((10, 20), values)
-    own = S * 2 / 3 * 7.0 * (1 / 100 - 1 / 400)
-    assert np.abs(values - found.value) + found.uncertainty == pytest.approx(7.0 / np.array([100.0, 400.0]) + own)
 
 
 @pytest.mark.parametrize(

@@ -53,13 +53,10 @@ def test_a_planted_fault_in_a_solver(hinge, solver, fault, word):
     assert found.verdict.completed is ("until" not in fault)
 
 
-def test_a_wrong_cprbm_does_not_hide_behind_the_step_of_theory(hinge):
-    """0.5 % too soft is the step of theory: the values in bending equal those in shear."""
+def test_identical_values_agree_and_a_fault_as_large_as_the_step_of_theory_differs(hinge):
+    # 0.5 % too soft is the step of theory: the values in bending equal those in shear.
     found = compared(hinge, MadeUp("cprbm", 1e-4, stiffness=1 / 1.005), MadeUp("fea", -1e-5))
     assert word_of(found) == "DIFFER VALUES"
-
-
-def test_identical_values_agree_without_any_uncertainty(hinge):
     found = compared(hinge, MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
     assert set(counted(found)) == {"AGREE"}
 
@@ -279,12 +276,9 @@ def test_a_minority_of_all_rows_decides_where_it_is_the_majority_of_a_probe():
     assert judge_case(RUNS.scene, found) == WORDS["C"]
 
 
-def test_the_worst_of_words():
+def test_rows_without_a_value_or_a_statement_and_the_worst_of_words():
     assert worst_of([Word.AGREE, None, Word.DIFFER, Word.UNDECIDED]) is Word.DIFFER
     assert worst_of([Word.AGREE, Word.UNDECIDED]) is Word.UNDECIDED
     assert worst_of([None]) is None
-
-
-def test_a_row_without_a_value_or_a_statement_takes_no_part_or_is_undecided():
     found = judge_rows(RUNS, [row(math.nan, math.nan, None), row(0.0, 0.0, None)])
     assert [(each.word, each.reason) for each in found] == [(None, None), (Word.UNDECIDED, Reason.RUN_ENDED)]
