@@ -75,8 +75,7 @@ class Geometry:
     @cached_property
     def has_faces(self) -> Flags:
         """Whether the second curves of pairs are rigid with several pieces (pairs,): a place may have several feet."""
-        second = self.sites.columns[:, 1]
-        return np.asarray(self.sites.rigid[second] & (self.arrays.last[second] > self.arrays.first[second]))
+        return np.asarray((self.sites.rigid & (self.arrays.last > self.arrays.first))[self.sites.columns[:, 1]])
 
     @cached_property
     def has_corners(self) -> bool:
@@ -221,13 +220,13 @@ class Contacts:
         """Gaps of all places at a state, the feet moved; the present feet stay."""
         return self.settled(geometry, z)[1]
 
-    def settled(self, geometry: Geometry, z: Array) -> tuple[Places, Array]:
-        """All places at a state with moved feet, and their gaps."""
-        places, gaps = copied(self.places), np.empty(len(self.places.pair))
-        settle(z, geometry.arrays, places, gaps, np.empty(len(gaps)), self.counters, 0)
+    def settled(self, geometry: Geometry, z: Array) -> tuple[Places, Array, Array]:
+        """All places at a state with moved feet, their gaps, and the gaps' curvatures."""
+        places, (gaps, curvatures) = copied(self.places), np.empty((2, len(self.places.pair)))
+        settle(z, geometry.arrays, places, gaps, curvatures, self.counters, 0)
         if geometry.law is not None:
             geometry.law.write_gaps(z, places, gaps)
-        return places, gaps
+        return places, gaps, curvatures
 
 
 def touching_as_drawn(geometry: Geometry, z: Array, contacts: Contacts) -> frozenset[int]:

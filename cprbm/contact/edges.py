@@ -9,8 +9,8 @@ N        σ n, from the beam to the corner
 =======  ====================================================================================
 
 A beam that touches a corner has both faces behind it: −N·a ≥ 0 and N·b ≥ 0.  Hence σ has the sign of n·(b − a) there.
-Farther away the position of the corner tells σ.  A corner that overlaps by the lost compliance keeps the last side.
-Beyond a beam's end a corner has no side: the beam may come back on either side.
+Farther away the position of the corner tells σ, unless the beam is inside the solid.  A corner that overlaps by the
+lost compliance keeps the last side.  Beyond a beam's end a corner has no side: the beam may come back on either side.
 
 Where N·b < 0 the distance falls along the face behind the corner: the point of contact leaves the corner, and is the
 minimum of the gap between beam and face.  The same holds for the face before the corner, where N·a > 0.  A point of
@@ -76,8 +76,11 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
         if places.at_point[k]:
             sides[curve] = 0.0
         elif distance >= SURE or known[curve] == 0.0:
-            a, b = _faces(geometry, z, places, k)
-            sides[curve] = 1.0 if np.array([-y, x]) @ (apart[k] if distance >= ON_BEAM else b - a) >= 0.0 else -1.0
+            (a, b), sizes = _faces(geometry, z, places, k)
+            # between the faces the vector from the corner to the foot is −α a + β b with shares of both faces
+            shares = np.linalg.lstsq(np.column_stack([a, -b]) * sizes, apart[k])[0]
+            way = b - a if distance < ON_BEAM or shares.min() > 0.0 < 1.0 - shares.sum() else apart[k]
+            sides[curve] = 1.0 if np.array([-y, x]) @ way >= 0.0 else -1.0
     return sides
 
 
@@ -118,14 +121,14 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
 def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float, float]:
     """N·a and N·b of a corner."""
     frame = gap_frame(z, geometry.arrays, places, k, np.empty((4, 2, STENCIL)))
-    a, b = (float(frame.nx * x + frame.ny * y) for x, y in _faces(geometry, z, places, k))
+    a, b = (float(frame.nx * x + frame.ny * y) for x, y in _faces(geometry, z, places, k)[0])
     return a, b
 
 
 def _faces(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[Array, Array]:
-    """a and b of a corner; both are zero for a circle."""
+    """a and b of a corner (2, 2), and sizes (2,) of the pieces; a and b are zero for a circle."""
     corner, first = corner_of(geometry, places, k), geometry.arrays.first[geometry.pairs[places.pair[k]].second]
     weights, borders = np.empty((2, STENCIL)), ((first + corner.before, 1.0), (first + corner.behind, 0.0))
-    tangents = [curve_jet(z, geometry.arrays, int(piece), xi, weights, weights)[2:4] for piece, xi in borders]
-    a, b = (np.array(tangent) / max(float(np.hypot(*tangent)), 1e-300) for tangent in tangents)
-    return a, b
+    tangents = np.array([curve_jet(z, geometry.arrays, int(piece), xi, weights, weights)[2:4] for piece, xi in borders])
+    sizes = np.maximum(np.hypot(*tangents.T), 1e-300)
+    return tangents / sizes[:, None], sizes

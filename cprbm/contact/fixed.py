@@ -194,12 +194,13 @@ def _turn_side(
     """Turn the side of a place beyond another beam: the place has come round an end, not through the beam.
 
     Beams with an overlap below ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
-    before an end has no side until the place is seen beside the beam.  The foot stays; ``room`` is lost.
+    before an end, or where beams cross steeply, has no side until the place is seen beside the beam.  The foot stays;
+    ``room`` is lost.
     """
     foot, eta, at_point = places.foot[k], places.eta[k], places.at_point[k]
     settle_place(z, curves, places, k, room[0], room[1], counters, 0, weights)
     thickness = thickness_between(curves, places.piece[k], places.xi[k], places.foot[k], places.eta[k])
-    if places.at_point[k]:
+    if places.at_point[k] or not np.isfinite(room[0, k]):
         places.side[k] = 0.0
     elif room[0, k] + thickness < -depth_beyond(curves, places.piece[k], thickness):
         places.side[k] *= -1.0

@@ -31,6 +31,9 @@ BOX_TESTS, SEARCHES, GAPS = range(3)
 FINDING = 40
 """Iterations of a moving place on a frozen state."""
 
+STEEP = 0.5
+"""Sine of the angle between two beams from which a joint between the ends of a beam does not touch the other beam."""
+
 LONGEST_STEP = 0.7
 """Change of a place in one iteration, pieces: less than a piece, so that a minimum is not jumped over."""
 
@@ -89,12 +92,17 @@ def find_bends(z: Array, curves: CurveArrays, places: Places, rounds: int) -> No
 
 
 @compiled
-def is_unturned(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
-    """True if a beam has not turned back between a place and a foot on the same beam: no contact there."""
-    if places.curve[k] != places.other[k]:
-        return False
-    turn: float = abs(z[curves.angle[places.piece[k]]] - z[curves.angle[places.foot[k]]])
-    return turn < TURNED_BACK
+def is_no_contact(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
+    """True if a place cannot touch: a beam that has not turned back to itself, a joint where two beams cross steeply.
+
+    Only an end of a beam meets another beam under a steep angle.
+    """
+    curve, piece, foot = places.curve[k], places.piece[k], places.foot[k]
+    turn = z[curves.angle[piece]] - z[curves.angle[foot]]
+    if curve == places.other[k]:
+        return bool(abs(turn) < TURNED_BACK)
+    between = not places.moves[k] and curves.first[curve] < piece + places.xi[k] < curves.last[curve] + 1
+    return bool(between and min(curves.angle[piece], curves.angle[foot]) >= 0 and abs(np.sin(turn)) > STEEP)
 
 
 @compiled
@@ -119,7 +127,7 @@ def settle_place(
         places.foot[k], places.eta[k], places.at_point[k] = closest_point(
             z, curves, places.other[k], x, y, foot, eta, force, side, weights[0]
         )
-        if is_unturned(z, curves, places, k):
+        if is_no_contact(z, curves, places, k):
             break
         f = gap_frame(z, curves, places, k, weights)
         counters[GAPS] += 1
@@ -219,7 +227,7 @@ def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # prag
     """Vectors (k, 2) from the feet to the places; zero for a foot without contact on an unturned beam."""
     vectors, weights = np.zeros((places.piece.size, 2)), np.empty((2, STENCIL))
     for k in range(places.piece.size):
-        if not is_unturned(z, curves, places, k):
+        if not is_no_contact(z, curves, places, k):
             ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], weights)
             bx, by = curve_point(z, curves, places.foot[k], places.eta[k], weights)
             vectors[k, 0], vectors[k, 1] = ax - bx, ay - by
@@ -270,7 +278,7 @@ def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # prag
     """Write the present sides of places of a beam on itself; the feet must be found."""
     weights = np.empty((2, STENCIL))
     for k in range(places.piece.size):
-        if places.curve[k] == places.other[k] and not is_unturned(z, curves, places, k):
+        if places.curve[k] == places.other[k] and not is_no_contact(z, curves, places, k):
             ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], weights)
             bx, by, tx, ty, _, _ = curve_jet(z, curves, places.foot[k], places.eta[k], weights, weights)
             places.side[k] = 1.0 if (ay - by) * tx - (ax - bx) * ty >= 0.0 else -1.0

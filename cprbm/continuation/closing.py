@@ -14,7 +14,8 @@ The step ends there, and the stop closes or opens.
 Pairs that are open at the begin of a step stay open in the step.  The gap of a pair may be least between two joints;
 a moving place without a force finds the minimum.  Where g < 0 at the end, the first closing is located by values and
 slopes of g along the tangent: g = −CLOSED there, so that the active set closes the pair in the least gap.  A gap that
-jumps has no zero, and the step is too long.  An opening is the zero of F, continued by −g where the pair is open.
+jumps has no zero, and the step is too long, as after a passage over an end.  An opening is the zero of F, continued by
+−g where the pair is open.
 """
 
 from collections.abc import Callable
@@ -25,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.contact import TOUCHING, Geometry, Places, taken, touching_as_drawn
+from cprbm.contact import TOUCHING, Geometry, Places, sweeps_any_point, taken, touching_as_drawn
 from cprbm.continuation.path import SMALLEST_TURN, tangent, turned
 from cprbm.equilibrium import (
     NotConvergedError,
@@ -166,7 +167,7 @@ def nearest_place(geometry: Geometry, state: State, pair: int) -> tuple[float, P
     The gap is inf, and no place is marked, if the curves are far apart.
     """
     full = with_fixed_places(geometry, state.z, state.contacts)
-    settled, gaps = full.settled(geometry, state.z)
+    settled, gaps, _ = full.settled(geometry, state.z)
     places, gaps = with_minima(geometry, state.z, replace(full, places=settled), gaps, [pair])
     gaps = np.append(np.where(places.pair == pair, gaps, np.inf), np.inf)
     nearest = (np.arange(len(gaps)) == np.argmin(gaps)) & np.isfinite(gaps)
@@ -180,8 +181,7 @@ def apart_pairs(solved: Solved, pairs: frozenset[int]) -> frozenset[int]:
 
 def pressing(solved: Solved) -> frozenset[int]:
     """Numbers of the closed pairs."""
-    contacts = solved.state.contacts
-    return frozenset(contacts.places.pair[contacts.closed].tolist())
+    return frozenset(taken(solved.state.contacts.places, solved.state.contacts.closed).pair.tolist())
 
 
 def pressing_names(solved: Solved) -> frozenset[str]:
@@ -250,7 +250,7 @@ def contact_changes(
 
 
 def _closing(before: Solved, after: Solved, pairs: frozenset[int], solve: Callable[[float], Solved]) -> list[Change]:
-    """The first closing of pairs kept open; empty where no state on the way has a gap of ``-CLOSED``.
+    """The first closing of pairs kept open; empty where no state on the way has a gap of ``-CLOSED`` without a passage.
 
     Raises:
         NotConvergedError: a state on the way was not found.
@@ -272,7 +272,9 @@ def _closing(before: Solved, after: Solved, pairs: frozenset[int], solve: Callab
     end = event(1.0)
     share = located_by_slopes(event, end) if end[0] <= 0.0 else 1.0
     gap, slope, first = least(share)
-    if end[0] > 0.0 or abs(gap) > TOUCHING:
+    # an end that begins the step before another end has no side: another place touches after the end's passage
+    points = after.system.geometry.arrays, after.system.geometry.points, after.state.contacts.counters
+    if end[0] > 0.0 or abs(gap) > TOUCHING or sweeps_any_point(before.state.z, solve(share).state.z, *points):
         return []
     return [Change(share, pairs=pairs, closes=True, first=first, early=min(share, CLOSED / max(-slope, CLOSED)))]
 

@@ -194,8 +194,7 @@ class Driver:
                     )
             solved = solve(1.0)
             # an event is not sought in a step that is too long
-            turn = turned(self.solved, solved)
-            if turn > largest:
+            if (turn := turned(self.solved, solved)) > largest:
                 return StepError(
                     Ending.STEP_TOO_SMALL, f"a link turned by {turn:.2f} rad in one load step", too_long=True
                 )
@@ -282,8 +281,10 @@ class Driver:
             raise refused
         if longer > -ASKED:
             change = "longer" if longer >= ASKED else "longer or shorter"
-            straight = f"beam '{beam}' is straight between its ends, and cannot become {change} by bending"
-            raise StepError(Ending.STEP_TOO_SMALL, straight)
+            raise StepError(
+                Ending.STEP_TOO_SMALL,
+                f"beam '{beam}' is straight between its ends, and cannot become {change} by bending",
+            )
         kept = softest(solved).curvature
         return CriticalPoint(self.reached, 0.0, Loss.BIFURCATION, "", solved, solved, kept, kept)
 
@@ -317,9 +318,8 @@ class Driver:
 
     def _landed(self, point: CriticalPoint, target: Array, *, beside: bool) -> Solved | None:
         """The certified minimum of a descent under a target; None without a minimum, or with a minimum too far away."""
-        iterations = self.settings.iterations
         try:
-            landed = descend(self.system, point.start, point.curvature, target, self.acting, iterations)
+            landed = descend(self.system, point.start, point.curvature, target, self.acting, self.settings.iterations)
         except NotConvergedError:
             return None
         self.spent += landed.iterations

@@ -8,7 +8,8 @@ After every solve the rule looks at runs of neighbouring closed joints:
   again is part of a length: the moving place becomes joints.
 
 The equilibrium is solved again until the rule changes nothing.  Where moving places fail, or would move far at once,
-joints alone are solved first and made points anew, once.
+joints are solved first and made points anew, once: joints for flat points, else for all points.  Where joints fail too,
+the joints of the last solution stand for the point.
 """
 
 from dataclasses import replace
@@ -81,31 +82,37 @@ def touched_equilibrium(
         contacts.corner_sides,
         corner_sides(geometry, start.z, contacts.corner_sides, contacts.counters),
     )
-    contacts = replace(contacts, given_up=frozenset(), corner_sides=corners)
-    contacts, joints_tried, before = with_fixed_places(geometry, start.z, contacts, turning=True), False, start.z
-    old = contacts.places
+    contacts = with_fixed_places(
+        geometry, start.z, replace(contacts, given_up=frozenset(), corner_sides=corners), turning=True
+    )
+    before, old, joints_tried, failed = start.z, contacts.places, False, frozenset[tuple[int, int]]()
     for number in range(ROUNDS):
         try:
             solved = solve_set(system, replace(start, contacts=contacts), iterations, springs, awaited)
         except NotConvergedError:
             moves = contacts.places.moves & ~on_edge(geometry.arrays, contacts.places)
-            if not moves.any():
+            if moves.any():
+                # joints do not stand for a point between curves that turn much against each other over a link
+                flat = moves & (
+                    contacts.settled(geometry, start.z)[2] * geometry.arrays.link[contacts.places.piece] <= STEEPEST
+                )
+                contacts = _without(geometry, contacts, flat if flat.any() else moves)
+                failed |= contacts.given_up
+                contacts, joints_tried = replace(contacts, given_up=failed if joints_tried else frozenset()), True
+            elif failed and not start.contacts.places.moves.any():
+                contacts = replace(start.contacts, given_up=failed)
+            else:
                 raise
-            contacts = _without(geometry, contacts, moves)
-            if not joints_tried:
-                contacts, joints_tried = replace(contacts, given_up=frozenset()), True
             contacts = with_fixed_places(geometry, start.z, contacts)
             continue
         revised = _revised(geometry, solved, LIGHT if number < RETRIES else 0.0)
         if revised is None:
-            new = _come_near(geometry, solved)
             if passed_through(geometry, before, old, solved.state):
                 raise NotConvergedError("a beam passed through itself or over a point")
-            if new is None:
+            revised = _come_near(geometry, solved)
+            if revised is None:
                 return solved
-            revised = new
-        closing = revised.places.pair[revised.closed & revised.of_pairs(awaited)]
-        if len(closing):
+        if len(closing := revised.places.pair[revised.closed & revised.of_pairs(awaited)]):
             raise ContactClosesError(closing, closing)
         if number < RETRIES and not joints_tried:
             # the joints beside a place may open with the joints in its stead: the place is tried again
@@ -126,8 +133,7 @@ def _revised(geometry: Geometry, solved: Touched, least: float) -> Contacts | No
     if gone.any():
         return _without(geometry, contacts, gone)
     if light.any():
-        kept = copied(places)
-        kept.force[light] = 0.0
+        kept = places._replace(force=np.where(light, 0.0, places.force))
         return replace(contacts, places=kept, closed=contacts.closed & ~light)
     if geometry.has_corners:
         ends = _at_ends(geometry, solved)
@@ -205,8 +211,8 @@ def _without(geometry: Geometry, contacts: Contacts, gone: Flags) -> Contacts:
     for k in np.flatnonzero(gone).tolist():
         given_up |= {(int(places.pair[k]), int(places.piece[k]) + e) for e in range(-ISOLATED, ISOLATED + 1)}
         share = 1.0 - np.abs(arcs - arcs[k]) / link[k]
-        same = (places.pair == places.pair[k]) & (places.curve == places.curve[k])
-        beside = same & ~places.moves & (share > 0.0) & contacts.closed[k]
+        mine = (places.pair == places.pair[k]) & (places.curve == places.curve[k]) & contacts.closed[k]
+        beside = mine & ~places.moves & (share > 0.0)
         closed |= beside
         places.force[beside] += share[beside] * places.force[k]
     return replace(contacts, places=taken(places, ~gone), closed=closed[~gone], given_up=frozenset(given_up))

@@ -188,8 +188,7 @@ def solve_set(
     waits, met = contacts.of_pairs(contacts.kept_open | awaited), np.zeros(len(closed), dtype=bool)
     settling = curves, places, closed, gaps, curvatures, room, contacts.counters, geometry.sites.columns, waits
     settle_near(z, *settling[:7], FINDING)
-    seen: dict[bytes, int] = {}
-    last, returned = np.inf, False
+    seen, last, returned = dict[bytes, int](), np.inf, False
     for iteration in range(1, iterations + 1):
         before = closed.copy()
         if returned:
@@ -207,14 +206,16 @@ def solve_set(
         size = size if moved < ARRIVED else max(size, moved)
         arrived, last = size < CLOSE or SHRINKING * last < size < ROUNDED, size
         if arrived and not changed:
-            room[:] = passive
-            if _settle_set(geometry, z, settling, len(closed), FINDING) == 0:
+            room[:], rest = passive, arcs_of(curves, places)
+            wrong = _settle_set(geometry, z, settling, len(closed), FINDING)
+            leaves = np.abs(arcs_of(curves, places) - rest) > ARRIVED * curves.span[places.piece]
+            if wrong == 0 and not np.any(leaves & closed & ~on_edge(curves, places)):  # no maximum of the gap is left
                 overlaps = waits & (gaps < -OVERLAP)
                 met |= overlaps
                 if awaited.intersection(places.pair[met].tolist()):
                     raise ContactClosesError(places.pair[overlaps], places.pair[met])
-                state = replace(start, z=z, contacts=replace(contacts, places=places, closed=closed))
-                return Touched(state, gaps, curvatures, iteration)
+                known = replace(contacts, places=places, closed=closed)
+                return Touched(replace(start, z=z, contacts=known), gaps, curvatures, iteration)
     raise NotConvergedError(f"{iterations} iterations did not converge")
 
 
