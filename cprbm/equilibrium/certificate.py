@@ -163,18 +163,18 @@ def contact_measures(solved: Solved) -> tuple[float, float, float, float]:
     The last measure is the change of a contact force under a round-off of all closed gaps, over the largest force and
     at least 1.
 
-    The compliance that the chain lacks at a point of contact is no overlap.  Places with a shared force overlap by the
-    sum of both gaps.
+    The compliance that the chain lacks at a point of contact is no overlap, within a link of the point twice as much.
+    Places with a shared force overlap by the sum of both gaps.
     """
     geometry, contacts = solved.system.geometry, solved.state.contacts
     places, closed = contacts.places, contacts.closed
-    _, depth = beside_points(geometry.arrays, places, closed)
+    beside, depth = beside_points(geometry.arrays, places, closed)
     gaps, leaders = solved.gaps.copy(), np.arange(len(closed)) + places.shares
     follows = places.shares != 0
     np.add.at(gaps, leaders[follows], solved.gaps[follows])
     thick = geometry.arrays.thickness[places.piece] + geometry.arrays.thickness[places.foot] > 0.0
     free = ~closed & ~follows & (~places.moves | on_edge(geometry.arrays, places)) & (thick | ~places.at_point)
-    overlap = float(np.max(-gaps[free] - depth[free], initial=0.0))
+    overlap = float(np.max((-gaps - (1.0 + beside) * depth)[free], initial=0.0))
     values = np.abs(solved.factors.bordered.columns.values)
     # a state without contacts solves nothing
     changes = (
