@@ -106,7 +106,7 @@ class Measure:
         """Numbers station by station, SI; of values along a beam the largest magnitude."""
         mine = [
             each if each["arc_length"] is None else {**each, "value": abs(each["value"])}
-            for each in outcome.known
+            for each in outcome.numbers_with_values
             if (each["stage"], each["probe"], each["component"]) == (self.stage, self.probe, self.component)
         ]
         largest = {each["station"]: each for each in sorted(mine, key=lambda each: each["value"])}
@@ -114,7 +114,7 @@ class Measure:
 
     def last(self, outcome: Outcome) -> NumberRecord | None:
         """Number at the last reached station of the stage, SI; None without a number there."""
-        reached = {number["stage"]: number["station"] for number in outcome.known}.get(self.stage)
+        reached = {number["stage"]: number["station"] for number in outcome.numbers_with_values}.get(self.stage)
         return next((number for number in self.numbers(outcome) if number["station"] == reached), None)
 
     def values(self, outcome: Outcome) -> list[float]:

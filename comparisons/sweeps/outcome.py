@@ -56,7 +56,7 @@ class Outcome:
         return self.ending == "COMPLETED"
 
     @property
-    def known(self) -> list[NumberRecord]:
+    def numbers_with_values(self) -> list[NumberRecord]:
         """Numbers with a value."""
         return [number for number in self.numbers if number["value"] is not None]
 

@@ -64,7 +64,7 @@ class Sweep:
 
     def solved(self) -> list[tuple[Task, Outcome]]:
         """Points with numbers, in order."""
-        return [(task, outcome) for task, outcome in self.points() if outcome.known]
+        return [(task, outcome) for task, outcome in self.points() if outcome.numbers_with_values]
 
     @property
     def headline(self) -> str:

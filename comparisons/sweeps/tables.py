@@ -176,7 +176,7 @@ def _figures(sweep: Sweep, solved: Solved, shown: Sequence[Measure]) -> Iterator
 
 def _fullest(solved: Solved) -> Outcome:
     """The first outcome with the most known numbers."""
-    return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.known))
+    return max((outcome for _, outcome in solved), key=lambda outcome: len(outcome.numbers_with_values))
 
 
 def dependent(scene: Scene, solved: Solved) -> list[Measure]:
