@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.chain import add_row_gradient, row_values, strain_energy
-from cprbm.contact import TOUCHING, lost_at, taken
+from cprbm.contact import TOUCHING, lost_at
 from cprbm.equilibrium import Solved, State, System, hidden_forces
 from cprbm_scene.answer import Array
 
@@ -41,9 +41,6 @@ OUTSIDE = 1.1
 
 SMALLEST_TURN = 1e-4
 """Turn in a step, rad, below which tangents are not compared: such a step cannot lead to another branch."""
-
-EXCHANGED = 0.02
-"""The same where joints and points of contact have been exchanged: coarse chains turn by as much at an exchange."""
 
 SMALLEST_WORK = 1e-9
 """Power, and its change over the power, below which the energy is not compared: round-off of its sum is near."""
@@ -133,11 +130,8 @@ def power_rate(solved: Solved, change: Array, rate: Array) -> float:
 
 def energy_before(solved: Solved, change: Array, part: float) -> float:
     """Π at a ``part`` of the way before a state on the same branch, by Taylor's series."""
-    return (
-        potential(solved.system, solved.state)
-        - part * power(solved, change)
-        + 0.5 * part**2 * power_rate(solved, change, tangent(solved, change))
-    )
+    rate = power_rate(solved, change, tangent(solved, change))
+    return potential(solved.system, solved.state) - part * power(solved, change) + 0.5 * part**2 * rate
 
 
 def turned(before: Solved, after: Solved) -> float:
@@ -146,30 +140,31 @@ def turned(before: Solved, after: Solved) -> float:
 
 
 def pressing_joints(solved: Solved) -> list[tuple[int, int]]:
-    """Pairs and pieces of the closed joints."""
-    places = taken(solved.state.contacts.places, solved.state.contacts.closed & ~solved.state.contacts.places.moves)
-    return list(zip(places.pair.tolist(), places.piece.tolist(), strict=True))
+    """Pairs and pieces of the closed joints where all places are joints; else empty."""
+    contacts = solved.state.contacts
+    closed = contacts.closed & solved.system.geometry.joints_alone
+    return list(zip(contacts.places.pair[closed].tolist(), contacts.places.piece[closed].tolist(), strict=True))
 
 
 def jumped(before: Solved, after: Solved, change: Array) -> bool:
     """True if a step between two minima, with a ``change`` of the targets, left the branch.
 
     Where open places touch at the first state, the tangent there is one-sided.  Where all places are joints and other
-    joints press at the end, the tangent has changed at every exchange of joints.  Then only the energy tells.  Joints
-    in the place of a point of contact, or the reverse, move the state a little.
+    joints press at the end, the tangent has changed at every exchange of joints.  Then only the energy tells.
     """
     system = before.system
-    rates, angles = (tangent(before, change), tangent(after, change)), system.angles
+    rates = tangent(before, change), tangent(after, change)
+    angles = system.angles
     turn = after.state.z[angles] - before.state.z[angles]
     largest = float(np.abs(turn).max())
     mean = 0.5 * (rates[0][angles] + rates[1][angles])
-    exchanged = pressing_joints(before) != pressing_joints(after)
-    one_sided = np.any(np.abs(before.gaps[~before.state.contacts.closed]) < TOUCHING) or (
-        exchanged and system.geometry.joints_alone
-    )
-    if max(largest, float(np.abs(mean).max())) <= (EXCHANGED if exchanged else SMALLEST_TURN):
-        return False
-    if not one_sided and float(np.abs(turn - mean).max()) > (0.5 if largest > FAR else 1.0) * BENT * largest:
+    touching = np.any(np.abs(before.gaps[~before.state.contacts.closed]) < TOUCHING)
+    one_sided = touching or pressing_joints(before) != pressing_joints(after)
+    if (
+        not one_sided
+        and max(largest, float(np.abs(mean).max())) > SMALLEST_TURN
+        and float(np.abs(turn - mean).max()) > (0.5 if largest > FAR else 1.0) * BENT * largest
+    ):
         return True
     powers = power(before, change), power(after, change)
     scale, spread = max(abs(powers[0]), abs(powers[1])), abs(powers[1] - powers[0])
