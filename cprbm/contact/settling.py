@@ -224,7 +224,7 @@ def move_places(
 
 @compiled
 def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # pragma: no cover
-    """Vectors (k, 2) from the feet to the places; zero for a foot without contact on an unturned beam."""
+    """Vectors (k, 2) from the feet to the places; zero for places that cannot touch."""
     vectors, weights = np.zeros((places.piece.size, 2)), np.empty((2, STENCIL))
     for k in range(places.piece.size):
         if not is_no_contact(z, curves, places, k):

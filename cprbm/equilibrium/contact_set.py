@@ -209,7 +209,7 @@ def solve_set(
             room[:], rest = passive, arcs_of(curves, places)
             wrong = _settle_set(geometry, z, settling, len(closed), FINDING)
             leaves = np.abs(arcs_of(curves, places) - rest) > ARRIVED * curves.span[places.piece]
-            if wrong == 0 and not np.any(leaves & closed & ~on_edge(curves, places)):  # no maximum of the gap is left
+            if wrong == 0 and not np.any(leaves & closed & ~on_edge(curves, places)):  # no place slides off a maximum
                 overlaps = waits & (gaps < -OVERLAP)
                 met |= overlaps
                 if awaited.intersection(places.pair[met].tolist()):

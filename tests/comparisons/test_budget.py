@@ -1,4 +1,4 @@
-"""Error budgets of made-up answers whose parts are known, and what is told of them."""
+"""Error budgets of made-up answers whose parts are known, and the sentences about the budgets."""
 
 import json
 import math

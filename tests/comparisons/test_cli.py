@@ -296,7 +296,7 @@ def test_critical_values_are_printed_and_in_the_json(tmp_path, capsys):
     assert said.count("Critical values: where a branch ends") == 1
     assert "1.2288 rad (70.41°)" in said
     assert "Branch by branch" in said
-    assert len(said.splitlines()) < 300  # of 181 stations those that the scene names, and the last
+    assert len(said.splitlines()) < 300  # of 181 stations the named stations and the last
     assert run(["solve", "prestressed", "--json", "-"], solvers) == 0
     case = json.loads(capsys.readouterr().out)["cases"][0]
     assert [each["stage"] for each in case["solvers"]["cprbm"]["critical"]] == ["forward", "back"]

@@ -236,7 +236,7 @@ def test_killed_processes_are_errors_and_their_successors_work(hinge, right):
 
 
 class Refusing:
-    """A solver that refuses every question; a class, so that a process can be handed it."""
+    """A solver that refuses every question; a class, since a process takes no local function."""
 
     def __call__(self, scene, choices):
         raise SceneError([Mistake("beams.beam1", "a beam", "another beam", "file.toml")])

@@ -1,4 +1,4 @@
-"""What a newcomer begins with: a scene that says something, its schema, and what is missing."""
+"""The begin of a newcomer: a scene with an answer, the schema, and missing libraries."""
 
 import json
 import os

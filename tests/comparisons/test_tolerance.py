@@ -145,7 +145,7 @@ def test_a_tolerance_and_n_are_a_wrong_question(right, capsys, command):
 
 
 class Scattered(MadeUp):
-    """An error that does not fall with N: what it is at one N says nothing of another."""
+    """An error that does not fall with N: the error at one N says nothing of another N."""
 
     def __call__(self, scene, choices):
         count = choices.links if self.solver == "cprbm" else choices.elements
@@ -189,7 +189,7 @@ SAME_THEORY = Choices(kinematics="bending")
 
 @dataclass
 class Falling:
-    """A made-up solid whose error falls with the power p of n from C at n = 20; it notes what it is asked."""
+    """A made-up solid whose error falls with the power p of n from C at n = 20; the solid notes the questions."""
 
     C: float
     p: float

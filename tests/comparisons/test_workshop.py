@@ -55,7 +55,7 @@ def test_an_installed_package_says_where_the_tool_is(installed, tmp_path, argume
 
 def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
     done = _run(["bench", "tapered", "--sizes", "10", "--repeat", "1", "--json", "-"], installed, tmp_path)
-    # the first solve of an installation says that it compiles
+    # the first solve of an installation names the compilation
     others = [line for line in done.stderr.splitlines() if not line.startswith("cprbm compiles its kernels")]
     assert (done.returncode, others) == (0, [])
     data = json.loads(done.stdout)
