@@ -1,7 +1,7 @@
 """The chain: beams as rigid or compliant links with torsional springs, and rows."""
 
 from cprbm.chain.beam import BeamChain, ChainUnits, Theory
-from cprbm.chain.compiled import compiled
+from cprbm.chain.compiled import compiled, compiled_inner
 from cprbm.chain.kernel import Blocks, Joints, Links, evaluate_chains, link_arrays, strain_energy
 from cprbm.chain.loads import hidden_angles, hidden_flexibility
 from cprbm.chain.mechanism import AXES, PER_LINK, Direction, Form, Mechanism, Row, mechanism_of
@@ -39,6 +39,7 @@ __all__ = [
     "add_rows",
     "apart_ends",
     "compiled",
+    "compiled_inner",
     "ends_of",
     "evaluate_chains",
     "hidden_angles",

@@ -10,8 +10,9 @@ compiles at the first solve, and says so once.
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 from numba import njit
 from numba.core.event import Event, Listener, register
@@ -43,9 +44,12 @@ class Compilation(Listener):
         """Say that the first kernel of this package is compiled."""
         if not self.said and event.data["dispatcher"].py_func.__module__.startswith("cprbm."):
             self.said = True
-            later = "later runs find the stored machine code"
-            none = "no folder for the machine code can be written, so that every process compiles: set NUMBA_CACHE_DIR"
-            LOGGER.warning("cprbm compiles its kernels, a minute or two; %s", later if self.stored else none)
+            hint = (
+                "later runs find the stored machine code"
+                if self.stored
+                else "no folder for the machine code can be written, and every process compiles: set NUMBA_CACHE_DIR"
+            )
+            LOGGER.warning("cprbm compiles its kernels, a minute or two; %s", hint)
 
     def on_end(self, event: Event) -> None:
         """Nothing is said at the end."""
@@ -55,14 +59,23 @@ COMPILATION = Compilation()
 register("numba:compile", COMPILATION)  # type: ignore[no-untyped-call]
 
 
-def compiled(function: Function) -> Function:
-    """The function as machine code, with IEEE's results of divisions by zero."""
+def compiled(function: Function, *, counts: bool = True) -> Function:
+    """The function as machine code, with IEEE's results of divisions by zero.
+
+    Numba counts the references to every array of the arguments, also of tuples, at every call.  In a loop over places
+    of contact the counts take several times as long as the arithmetic.  A function without ``counts`` neither makes
+    nor returns arrays.
+    """
+    translated = partial(cast("Any", njit), error_model="numpy", _nrt=counts)  # Numba's types lack ``_nrt``
     try:
-        kernel = njit(cache=True, error_model="numpy")(function)
+        kernel = translated(cache=True)(function)
         stored = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
         if stored is not None:
             stored._version = f"{stored._version} {STAMP}"
     except RuntimeError:
         COMPILATION.stored = False
-        kernel = njit(error_model="numpy")(function)
+        kernel = translated()(function)
     return cast("Function", kernel)
+
+
+compiled_inner = partial(compiled, counts=False)

@@ -47,7 +47,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain.compiled import compiled, compiled_inner
 from cprbm.chain.mechanism import PER_LINK, Mechanism
 from cprbm_scene.answer import Array, Ints
 
@@ -118,33 +118,32 @@ def link_arrays(m: Mechanism) -> tuple[Links, Joints]:
     return links, joints
 
 
-@compiled
-def _partials_of_links(z: Array, links: Links) -> Array:  # pragma: no cover
-    """F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ, r and s − c of the links alone (links, 11)."""
-    force, angle, x, y = np.zeros((links.length.size, 11)), z[links.first + 4], z[links.first + 2], z[links.first + 3]
-    a, b = np.cos(angle), np.sin(angle)
-    N, Q, L, c, s, beta = x * a + y * b, y * a - x * b, links.length, links.stretch, links.shear, links.lean
-    r, arm = 1.0 - (s - c) * N, s - c
-    force[:, 0], force[:, 1], force[:, 2], force[:, 3], force[:, 4] = (
-        -L * (1.0 + c * N - beta * Q * Q * r * arm),
-        -L * (s + beta * r * r) * Q,
-        -L * (c + beta * (Q * arm) ** 2),
-        L * 2.0 * beta * Q * r * arm,
-        -L * (s + beta * r * r),
-    )
-    force[:, 5], force[:, 6], force[:, 7], force[:, 8], force[:, 9], force[:, 10] = N, Q, a, b, r, arm
-    return force
+@compiled_inner
+def _partials_of_links(z: Array, links: Links, force: Array) -> None:  # pragma: no cover
+    """Write F_N, F_Q, F_NN, F_NQ, F_QQ, N, Q, cos θ, sin θ, r and s − c of the links alone to ``force`` (links, 11)."""
+    for j in range(links.first.size):
+        i, L, c, s, beta = links.first[j], links.length[j], links.stretch[j], links.shear[j], links.lean[j]
+        a, b = cos(z[i + 4]), sin(z[i + 4])
+        N, Q, arm = z[i + 2] * a + z[i + 3] * b, z[i + 3] * a - z[i + 2] * b, s - c
+        r = 1.0 - arm * N
+        force[j, 0], force[j, 1], force[j, 2], force[j, 3], force[j, 4] = (
+            -L * (1.0 + c * N - beta * Q * Q * r * arm),
+            -L * (s + beta * r * r) * Q,
+            -L * (c + beta * (Q * arm) ** 2),
+            L * 2.0 * beta * Q * r * arm,
+            -L * (s + beta * r * r),
+        )
+        force[j, 5], force[j, 6], force[j, 7], force[j, 8], force[j, 9], force[j, 10] = N, Q, a, b, r, arm
 
 
-@compiled
+@compiled_inner
 def _partials_of_joints(
-    z: Array, links: Links, joints: Joints, force: Array
-) -> tuple[Array, Array]:  # pragma: no cover
+    z: Array, links: Links, joints: Joints, force: Array, rate: Array, cross: Array
+) -> None:  # pragma: no cover
     """Add the joints' partials to those of the links.
 
-    F_d, F_dd, F_dN₋, F_dQ₋, F_dN₊, F_dQ₊ (joints, 6), and the derivative by both forces (joints,).
+    Writes F_d, F_dd, F_dN₋, F_dQ₋, F_dN₊, F_dQ₊ to ``rate`` (joints, 6), the derivative by both forces to ``cross``.
     """
-    rate, cross = np.empty((joints.stiffness.size, 6)), np.empty(joints.stiffness.size)
     for i in range(joints.stiffness.size):
         j = joints.before[i]
         left, right, of = force[j], force[j + 1], rate[i]
@@ -174,10 +173,9 @@ def _partials_of_joints(
             _add_half(left, of, 2, joints.half_before[i], 0.25, d)
         if joints.half_behind[i] != 0.0:
             _add_half(right, of, 4, joints.half_behind[i], -0.25, d)
-    return rate, cross
 
 
-@compiled
+@compiled_inner
 def _add_half(side: Array, of: Array, at: int, w: float, quarter: float, d: float) -> None:  # pragma: no cover
     """Add the partials of −w Q̂²/2 of a half link to those of its link and its joint."""
     a, b = cos(quarter * d), sin(quarter * d)
@@ -196,10 +194,21 @@ def _add_half(side: Array, of: Array, at: int, w: float, quarter: float, d: floa
 @compiled
 def evaluate_chains(z: Array, links: Links, joints: Joints, gradient: Array) -> Blocks:  # pragma: no cover
     """Blocks of the Hessian; adds the chains' gradient to ``gradient``."""
-    count, force = links.length.size, _partials_of_links(z, links)
-    rate, cross = _partials_of_joints(z, links, joints, force)
+    count, turning = links.length.size, joints.stiffness.size
+    force, rate, cross = np.empty((count, 11)), np.empty((turning, 6)), np.empty(turning)
+    _partials_of_links(z, links, force)
+    _partials_of_joints(z, links, joints, force, rate, cross)
     blocks = Blocks(np.empty(count), np.empty(count), np.empty((count, 3, 2)), np.empty((count, 3, 2, 2)))
-    for j in range(count):
+    _write_blocks(z, links, force, blocks, gradient)
+    for i in range(turning):
+        _turn_joint(joints.before[i], links, force, rate[i], cross[i], blocks, gradient)
+    return blocks
+
+
+@compiled_inner
+def _write_blocks(z: Array, links: Links, force: Array, blocks: Blocks, gradient: Array) -> None:  # pragma: no cover
+    """Write the blocks of all links, and add the links' gradient."""
+    for j in range(links.first.size):
         i = links.first[j]
         F_N, F_Q, F_NN, F_NQ, F_QQ = force[j, 0], force[j, 1], force[j, 2], force[j, 3], force[j, 4]
         N, Q, a, b = force[j, 5], force[j, 6], force[j, 7], force[j, 8]
@@ -221,12 +230,9 @@ def evaluate_chains(z: Array, links: Links, joints: Joints, gradient: Array) -> 
         K[1, 1, 0] = K[1, 0, 1]
         blocks.turn[j] = by_N * Q - by_Q * N - F_N * N - F_Q * Q
         blocks.next_turn[j] = 0.0
-    for i in range(joints.stiffness.size):
-        _turn_joint(joints.before[i], links, force, rate[i], cross[i], blocks, gradient)
-    return blocks
 
 
-@compiled
+@compiled_inner
 def _turn_joint(
     j: int, links: Links, force: Array, of: Array, X: float, blocks: Blocks, gradient: Array
 ) -> None:  # pragma: no cover
@@ -258,13 +264,16 @@ def strain_energy(z: Array, links: Links, joints: Joints) -> float:
     """Energy of joints and links at a solution of the link equations."""
     unloaded, turns = z.copy(), np.diff(z[links.first + 4])[joints.before] - joints.rest
     unloaded[links.first + 2], unloaded[links.first + 3] = 0.0, 0.0
-    force, free = _partials_of_links(z, links), _partials_of_links(unloaded, links)
+    force, free = np.empty((2, len(links.length), 11))
+    _partials_of_links(z, links, force)
+    _partials_of_links(unloaded, links, free)
     N, Q = force[:, 5], force[:, 6]
     leaning = links.lean * force[:, 9] * (3.0 * force[:, 9] - 2.0)
     stored = links.length * (links.stretch * N * N + (links.shear + leaning) * Q * Q)
     # the links' own forces at rest would cover the small parts of the joints by round-off
     force[:, :2] = free[:, :2] = 0.0
-    _partials_of_joints(z, links, joints, force)
-    _partials_of_joints(unloaded, links, joints, free)
+    scratch = np.empty((len(joints.stiffness), 6)), np.empty(len(joints.stiffness))
+    _partials_of_joints(z, links, joints, force, *scratch)
+    _partials_of_joints(unloaded, links, joints, free, *scratch)
     stored -= N * (force[:, 0] - free[:, 0]) + Q * (force[:, 1] - free[:, 1])
     return 0.5 * float(joints.stiffness @ turns**2 + stored.sum())

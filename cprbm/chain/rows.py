@@ -26,7 +26,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cprbm.chain.compiled import compiled
+from cprbm.chain.compiled import compiled, compiled_inner
 from cprbm.chain.loads import unit_force, unit_moment
 from cprbm.chain.mechanism import AXES, Direction, Form, Mechanism, Row, node_coordinate
 from cprbm_scene import FreeEnd, Scene, WeldedEnd
@@ -241,7 +241,7 @@ def row_values(z: Array, rows: RowArrays) -> Array:  # pragma: no cover
     return values
 
 
-@compiled
+@compiled_inner
 def add_row_gradient(z: Array, rows: RowArrays, weight: Array, gradient: Array) -> None:  # pragma: no cover
     """Add Σ weight ∂f/∂z of all rows to ``gradient``."""
     for t in range(rows.linear_row.size):

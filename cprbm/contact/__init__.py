@@ -24,7 +24,7 @@ from cprbm.contact.candidates import (
     touching_as_drawn,
 )
 from cprbm.contact.closest import lost_at
-from cprbm.contact.curve import BEND, CORNER, STENCIL, Curve, CurveArrays, Frames, beam_curve, curve_arrays
+from cprbm.contact.curve import BEND, CORNER, Curve, CurveArrays, Frames, beam_curve, curve_arrays
 from cprbm.contact.edges import corner_sides, is_left, left_corner
 from cprbm.contact.fixed import REACH, Sites, contact_places, is_movable, joined, matched, picked
 from cprbm.contact.gap import (
@@ -70,7 +70,6 @@ __all__ = [
     "REACH",
     "SEARCHES",
     "SHIFT",
-    "STENCIL",
     "TANGENT",
     "TOUCHING",
     "TURN",

@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.chain import Direction, Mechanism, unit_direction
-from cprbm.contact.curve import STENCIL, Curve, CurveArrays, curve_arrays
+from cprbm.contact.curve import Curve, CurveArrays, curve_arrays
 from cprbm.contact.fixed import FREE, Sites, is_on_end_body, is_straight, places_at_feet
 from cprbm.contact.gap import Law, Places, gap_frame
 from cprbm.contact.pairs import Pair, contact_pairs
@@ -71,11 +71,6 @@ class Geometry:
                 for k, beam in ((pair.first, pair.second), (pair.second, pair.first)):
                     found += [(k, beam, first[k], 0), (k, beam, last[k], 1)]
         return np.array(found, dtype=np.int64).reshape(-1, 4)
-
-    @cached_property
-    def has_faces(self) -> Flags:
-        """Whether the second curves of pairs are rigid with several pieces (pairs,): a place may have several feet."""
-        return np.asarray((self.sites.rigid & (self.arrays.last > self.arrays.first))[self.sites.columns[:, 1]])
 
     @cached_property
     def has_corners(self) -> bool:
@@ -179,14 +174,13 @@ def sides_at_rest(geometry: Geometry, z: Array, counters: Ints) -> Array:
     settle(z, geometry.arrays, places, gaps, curvatures, counters, 0)
     arrays = geometry.arrays
     signed = np.where(places.at_point, np.inf, gaps + half_thicknesses(arrays, places))
-    weights = np.empty((4, 2, STENCIL))
     for number in np.flatnonzero(unknown):
         distance = np.where((places.pair == number) & (np.abs(signed) > TOUCHING), np.abs(signed), np.inf)
         if distance.min(initial=np.inf) == np.inf:
             sides[number] = 1.0
             continue
         best = int(np.argmin(distance))
-        along = gap_frame(z, arrays, places, best, weights).along
+        along = gap_frame(z, arrays, places, best).along
         role = int(places.curve[best] != geometry.sites.columns[number, 0])
         side = 1.0 if signed[best] >= 0.0 else -1.0
         sides[number, role], sides[number, 1 - role] = side, -side if along > 0.0 else side

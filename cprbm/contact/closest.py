@@ -22,9 +22,9 @@ from math import copysign, hypot, sqrt
 
 import numpy as np
 
-from cprbm.chain import compiled
+from cprbm.chain import compiled, compiled_inner
 from cprbm.contact.curve import STENCIL, CurveArrays
-from cprbm_scene.answer import Array
+from cprbm_scene.answer import Array, Ints
 
 STEPS = 60
 """Iterations; Newton's method needs fewer than ten, crossing a curve piece by piece the rest."""
@@ -51,7 +51,7 @@ TURNED_BACK = 2.6
 """Turn of a beam between two places, rad, from which the beam may touch itself: nearly half a turn."""
 
 
-@compiled
+@compiled_inner
 def lost_at(curves: CurveArrays, piece: int, xi: float, order: int) -> float:  # pragma: no cover
     """c, c' or c'' of a piece."""
     value = 0.0
@@ -61,22 +61,20 @@ def lost_at(curves: CurveArrays, piece: int, xi: float, order: int) -> float:  #
     return value
 
 
-@compiled
+@compiled_inner
 def curve_jet(
-    z: Array, curves: CurveArrays, piece: int, xi: float, weights: Array, slopes: Array
+    z: Array, curves: CurveArrays, piece: int, xi: float
 ) -> tuple[float, float, float, float, float, float]:  # pragma: no cover
-    """C, C' and C'' at once; writes the weights (2, STENCIL) of C and of C'."""
+    """C, C' and C'' at once."""
     x = y = u = v = k = m = 0.0
     for i in range(STENCIL):
         node, p, q = curves.stencil[piece, i], curves.real[piece, i], curves.imaginary[piece, i]
         zx, zy = z[node], z[node + 1]
         a = p[0] + xi * (p[1] + xi * (p[2] + xi * p[3]))
         b = q[0] + xi * (q[1] + xi * (q[2] + xi * q[3]))
-        weights[0, i], weights[1, i] = a, b
         x += a * zx - b * zy
         y += b * zx + a * zy
         a, b = p[1] + xi * (2.0 * p[2] + 3.0 * xi * p[3]), q[1] + xi * (2.0 * q[2] + 3.0 * xi * q[3])
-        slopes[0, i], slopes[1, i] = a, b
         u += a * zx - b * zy
         v += b * zx + a * zy
         a, b = 2.0 * p[2] + 6.0 * xi * p[3], 2.0 * q[2] + 6.0 * xi * q[3]
@@ -85,16 +83,24 @@ def curve_jet(
     return x, y, u, v, k, m
 
 
-@compiled
-def curve_point(
-    z: Array, curves: CurveArrays, piece: int, xi: float, weights: Array
+@compiled_inner
+def curve_point(z: Array, curves: CurveArrays, piece: int, xi: float) -> tuple[float, float]:  # pragma: no cover
+    """C."""
+    return curve_jet(z, curves, piece, xi)[:2]
+
+
+@compiled_inner
+def weight_at(
+    curves: CurveArrays, piece: int, i: int, xi: float, order: int
 ) -> tuple[float, float]:  # pragma: no cover
-    """C; ``weights`` (2, STENCIL) is scratch space."""
-    x, y, _, _, _, _ = curve_jet(z, curves, piece, xi, weights, weights)
-    return x, y
+    """Real and imaginary part of the weight w_i of a piece, or of w_i' with ``order`` 1."""
+    p, q = curves.real[piece, i], curves.imaginary[piece, i]
+    if order == 1:
+        return p[1] + xi * (2.0 * p[2] + 3.0 * xi * p[3]), q[1] + xi * (2.0 * q[2] + 3.0 * xi * q[3])
+    return p[0] + xi * (p[1] + xi * (p[2] + xi * p[3])), q[0] + xi * (q[1] + xi * (q[2] + xi * q[3]))
 
 
-@compiled
+@compiled_inner
 def thickness_between(curves: CurveArrays, piece: int, xi: float, foot: int, eta: float) -> float:  # pragma: no cover
     """Sum of the half thicknesses of two points."""
     return float(
@@ -102,13 +108,13 @@ def thickness_between(curves: CurveArrays, piece: int, xi: float, foot: int, eta
     )
 
 
-@compiled
+@compiled_inner
 def depth_beyond(curves: CurveArrays, piece: int, thickness: float) -> float:  # pragma: no cover
     """Largest overlap of two beams in contact; with a larger overlap a point is on the other side of a beam."""
     return BEYOND * (thickness if thickness > 0.0 else curves.span[piece])
 
 
-@compiled
+@compiled_inner
 def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> tuple[int, int]:  # pragma: no cover
     """Pieces behind and before the border that a step from a piece crosses; twice the piece at an end of the curve."""
     first, last = curves.first[curve], curves.last[curve]
@@ -117,7 +123,7 @@ def border_pieces(curves: CurveArrays, curve: int, piece: int, step: float) -> t
     return (piece + 1, piece) if step > 0.0 else (piece, piece - 1)
 
 
-@compiled
+@compiled_inner
 def moved_along(
     curves: CurveArrays, curve: int, piece: int, xi: float, step: float
 ) -> tuple[int, float, bool]:  # pragma: no cover
@@ -134,22 +140,22 @@ def moved_along(
     return piece, xi, False
 
 
-@compiled
+@compiled_inner
 def is_corner(
-    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, side: float, weights: Array
+    z: Array, curves: CurveArrays, piece: int, before: int, x: float, y: float, side: float
 ) -> bool:  # pragma: no cover
     """True if the border of two pieces is closest to (x, y): the steps of both pieces lead to the border.
 
     R is negative with a negative ``side``.
     """
-    _, _, ax, ay, _, _ = curve_jet(z, curves, before, 1.0, weights, weights)
-    px, py, bx, by, _, _ = curve_jet(z, curves, piece, 0.0, weights, weights)
+    _, _, ax, ay, _, _ = curve_jet(z, curves, before, 1.0)
+    px, py, bx, by, _, _ = curve_jet(z, curves, piece, 0.0)
     R = copysign(hypot(px - x, py - y), side)
     back, ahead = R * curves.thickening[before], R * curves.thickening[piece]
     return bool((px - x) * ax + (py - y) * ay < back and ahead < (px - x) * bx + (py - y) * by)
 
 
-@compiled
+@compiled_inner
 def closest_point(
     z: Array,
     curves: CurveArrays,
@@ -160,17 +166,15 @@ def closest_point(
     eta: float,
     force: float,
     side: float,
-    weights: Array,
 ) -> tuple[int, float, bool]:  # pragma: no cover
     """Closest point on a curve near a first guess: piece, parameter, True at an end, a corner or a circle's centre.
 
-    ``force`` is F of a point contact, 0 otherwise; ``weights`` (2, STENCIL) is scratch space.  R is negative for a
-    point beyond the curve, seen from ``side``.
+    ``force`` is F of a point contact, 0 otherwise.  R is negative for a point beyond the curve, seen from ``side``.
     """
     if curves.is_point[curve]:
         return piece, 0.0, True
     for _ in range(STEPS):
-        px, py, tx, ty, kx, ky = curve_jet(z, curves, piece, eta, weights, weights)
+        px, py, tx, ty, kx, ky = curve_jet(z, curves, piece, eta)
         px, py = px - x, py - y
         R, square = hypot(px, py), tx * tx + ty * ty
         if side * (ty * px - tx * py) < 0.0:
@@ -185,7 +189,7 @@ def closest_point(
         if arrived or behind == before:
             # within round-off of a border the foot stays on the piece, whatever the direction of the next piece
             eta = min(1.0, max(0.0, eta + step))
-        elif is_corner(z, curves, behind, before, x, y, R, weights):
+        elif is_corner(z, curves, behind, before, x, y, R):
             return behind, 0.0, True
         else:
             # the next piece has another direction behind a corner: the search stops at the border
@@ -195,8 +199,8 @@ def closest_point(
     return piece, eta, rests
 
 
-@compiled
-def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weights: Array) -> None:  # pragma: no cover
+@compiled_inner
+def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array) -> None:  # pragma: no cover
     """Write the chords (2 pieces, 5) of a curve's pieces and of groups of pieces: both ends and a distance.
 
     Row 2 ``first`` + k holds group k: the groups 2k and 2k + 1 together, from the number of pieces on a single piece.
@@ -205,8 +209,8 @@ def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weigh
     base, count = 2 * curves.first[curve], curves.last[curve] + 1 - curves.first[curve]
     for piece in range(curves.first[curve], curves.last[curve] + 1):
         chord = chords[piece + curves.first[curve] + count]
-        chord[0], chord[1] = curve_point(z, curves, piece, 0.0, weights)
-        chord[2], chord[3] = curve_point(z, curves, piece, 1.0, weights)
+        chord[0], chord[1] = curve_point(z, curves, piece, 0.0)
+        chord[2], chord[3] = curve_point(z, curves, piece, 1.0)
         chord[4] = 0.0
     for k in range(count - 1, 0, -1):
         chord, one, two = chords[base + k], chords[base + 2 * k], chords[base + 2 * k + 1]
@@ -215,7 +219,7 @@ def write_chords(z: Array, curves: CurveArrays, curve: int, chords: Array, weigh
         chord[4] = max(one[4], two[4]) + aside
 
 
-@compiled
+@compiled_inner
 def _to_chord(chord: Array, x: float, y: float) -> tuple[float, float]:  # pragma: no cover
     """Parameter of the closest point of a chord, and its distance."""
     ax, ay = chord[0], chord[1]
@@ -225,12 +229,13 @@ def _to_chord(chord: Array, x: float, y: float) -> tuple[float, float]:  # pragm
     return at, hypot(ax + at * cx - x, ay + at * cy - y)
 
 
-@compiled
+@compiled_inner
 def closest_of(
     z: Array,
     curves: CurveArrays,
     curve: int,
     chords: Array,
+    waiting: Ints,
     guess: int,
     x: float,
     y: float,
@@ -243,12 +248,13 @@ def closest_of(
     Args:
         z, curves, curve: the state and the curve.
         chords: of :func:`write_chords`.
+        waiting: scratch space (GROUPS,).
         guess: a piece; a near one saves time.
         x, y: the point.
         turn: an angle, and the least turn of a piece's link from there; the distance is inf without any such piece.
     """
     first, count = curves.first[curve], curves.last[curve] + 1 - curves.first[curve]
-    best, found, share, waiting, size = np.inf, first, 0.0, np.empty(GROUPS, np.int64), 1
+    best, found, share, size = np.inf, first, 0.0, 1
     bound = _to_chord(chords[guess + first + count], x, y)[1] if turn[1] == 0.0 else np.inf
     waiting[0] = 1
     while size > 0:
@@ -269,12 +275,12 @@ def closest_of(
 
 @compiled
 def closest_chord(
-    z: Array, curves: CurveArrays, curve: int, x: float, y: float, weights: Array
+    z: Array, curves: CurveArrays, curve: int, x: float, y: float
 ) -> tuple[int, float, float]:  # pragma: no cover
     """Piece and parameter of the closest chord of all pieces, and its distance."""
-    chords = np.empty((2 * curves.span.size, 5))
-    write_chords(z, curves, curve, chords, weights)
-    return closest_of(z, curves, curve, chords, curves.first[curve], x, y, (0.0, 0.0))
+    chords, waiting = np.empty((2 * curves.span.size, 5)), np.empty(GROUPS, np.int64)
+    write_chords(z, curves, curve, chords)
+    return closest_of(z, curves, curve, chords, waiting, curves.first[curve], x, y, (0.0, 0.0))
 
 
 @compiled
@@ -283,13 +289,12 @@ def curve_boxes(z: Array, curves: CurveArrays) -> Array:  # pragma: no cover
 
     A point of a piece is at most max |C''|/8 away from a point of the chord; C'' is linear along a piece.
     """
-    boxes, weights = np.empty((curves.first.size, 4)), np.empty((2, STENCIL))
+    boxes = np.array([np.inf, np.inf, -np.inf, -np.inf]) * np.ones((curves.first.size, 1))
     for curve in range(curves.first.size):
         box = boxes[curve]
-        box[:2], box[2:] = np.inf, -np.inf
         for piece in range(curves.first[curve], curves.last[curve] + 1):
-            ax, ay, _, _, kx, ky = curve_jet(z, curves, piece, 0.0, weights, weights)
-            bx, by, _, _, mx, my = curve_jet(z, curves, piece, 1.0, weights, weights)
+            ax, ay, _, _, kx, ky = curve_jet(z, curves, piece, 0.0)
+            bx, by, _, _, mx, my = curve_jet(z, curves, piece, 1.0)
             room = sqrt(max(kx * kx + ky * ky, mx * mx + my * my)) / 8.0
             room += max(curves.thickness[piece], curves.thickness[piece] + curves.thickening[piece])
             box[0], box[1] = min(box[0], min(ax, bx) - room), min(box[1], min(ay, by) - room)

@@ -22,7 +22,6 @@ import numpy as np
 from cprbm.contact.candidates import Geometry, on_edge, taken
 from cprbm.contact.closest import curve_jet
 from cprbm.contact.corners import Corner
-from cprbm.contact.curve import STENCIL
 from cprbm.contact.fixed import is_movable
 from cprbm.contact.gap import Places, gap_frame
 from cprbm.contact.settling import FINDING, find_feet, near_pairs, separations, settle
@@ -69,9 +68,8 @@ def corner_sides(geometry: Geometry, z: Array, known: Array, counters: Ints) -> 
     find_feet(z, arrays, places, nothing, counters)
     settle(z, arrays, places, nothing, nothing, counters, 0)
     apart = separations(z, arrays, places)
-    weights = np.empty((2, STENCIL))
     for k, curve in enumerate(places.curve.tolist()):
-        _, _, x, y, _, _ = curve_jet(z, arrays, places.foot[k], places.eta[k], weights, weights)
+        _, _, x, y, _, _ = curve_jet(z, arrays, places.foot[k], places.eta[k])
         distance = float(np.hypot(*apart[k]))
         if places.at_point[k]:
             sides[curve] = 0.0
@@ -120,7 +118,7 @@ def left_corner(geometry: Geometry, z: Array, places: Places, k: int, sides: Arr
 
 def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float, float]:
     """N·a and N·b of a corner."""
-    frame = gap_frame(z, geometry.arrays, places, k, np.empty((4, 2, STENCIL)))
+    frame = gap_frame(z, geometry.arrays, places, k)
     a, b = (float(frame.nx * x + frame.ny * y) for x, y in _faces(geometry, z, places, k)[0])
     return a, b
 
@@ -128,7 +126,7 @@ def _slopes(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[float
 def _faces(geometry: Geometry, z: Array, places: Places, k: int) -> tuple[Array, Array]:
     """a and b of a corner (2, 2), and sizes (2,) of the pieces; a and b are zero for a circle."""
     corner, first = corner_of(geometry, places, k), geometry.arrays.first[geometry.pairs[places.pair[k]].second]
-    weights, borders = np.empty((2, STENCIL)), ((first + corner.before, 1.0), (first + corner.behind, 0.0))
-    tangents = np.array([curve_jet(z, geometry.arrays, int(piece), xi, weights, weights)[2:4] for piece, xi in borders])
+    borders = (first + corner.before, 1.0), (first + corner.behind, 0.0)
+    tangents = np.array([curve_jet(z, geometry.arrays, int(piece), xi)[2:4] for piece, xi in borders])
     sizes = np.maximum(np.hypot(*tangents.T), 1e-300)
     return tangents / sizes[:, None], sizes

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain import compiled
+from cprbm.chain import compiled, compiled_inner
 from cprbm.contact.closest import depth_beyond, thickness_between
-from cprbm.contact.curve import STENCIL, CurveArrays
+from cprbm.contact.curve import CurveArrays
 from cprbm.contact.gap import Places
 from cprbm.contact.settling import choose_sides, find_bends, find_feet, near_pairs, settle_place
 from cprbm_scene.answer import Array, Flags, Ints
@@ -91,15 +91,16 @@ def joined(places: Places, others: Places) -> Places:  # pragma: no cover
     )
 
 
-@compiled
+@compiled_inner
 def is_straight(curves: CurveArrays, piece: int) -> bool:  # pragma: no cover
     """True for a straight piece of a body's edge."""
-    bends = np.abs(curves.real[piece, 1, 2:]).sum() + np.abs(curves.imaginary[piece, 1, 2:]).sum()
+    bends = abs(curves.real[piece, 1, 2]) + abs(curves.real[piece, 1, 3])
+    bends += abs(curves.imaginary[piece, 1, 2]) + abs(curves.imaginary[piece, 1, 3])
     speed = np.hypot(curves.real[piece, 1, 1], curves.imaginary[piece, 1, 1])
     return bool(curves.angle[piece] < 0 and bends < PARALLEL * speed)
 
 
-@compiled
+@compiled_inner
 def is_on_end_body(curves: CurveArrays, sites: Sites, places: Places, k: int, end: int) -> bool:  # pragma: no cover
     """True if a foot lies on, or beside a joint with, the body of the start (0) or end (1) of the place's curve.
 
@@ -116,7 +117,7 @@ def is_on_end_body(curves: CurveArrays, sites: Sites, places: Places, k: int, en
     return bool(guided or (own != FREE and (at_start or at_end)))
 
 
-@compiled
+@compiled_inner
 def is_movable(curves: CurveArrays, sites: Sites, places: Places, k: int) -> bool:  # pragma: no cover
     """True if a place may move along the place's curve."""
     curve, piece, xi = places.curve[k], places.piece[k], places.xi[k]
@@ -187,22 +188,19 @@ def matched(curves: CurveArrays, places: Places, others: Places) -> Ints:  # pra
     return found
 
 
-@compiled
-def _turn_side(
-    z: Array, curves: CurveArrays, places: Places, k: int, counters: Ints, room: Array, weights: Array
-) -> None:  # pragma: no cover
+@compiled_inner
+def _turn_side(z: Array, curves: CurveArrays, places: Places, k: int, counters: Ints) -> None:  # pragma: no cover
     """Turn the side of a place beyond another beam: the place has come round an end, not through the beam.
 
     Beams with an overlap below ``BEYOND`` of their half thicknesses, or lines of a piece, are in contact.  A place
-    before an end, or where beams cross steeply, has no side until the place is seen beside the beam.  The foot stays;
-    ``room`` is lost.
+    before an end, or where beams cross steeply, has no side until the place is seen beside the beam.  The foot stays.
     """
     foot, eta, at_point = places.foot[k], places.eta[k], places.at_point[k]
-    settle_place(z, curves, places, k, room[0], room[1], counters, 0, weights)
+    gap, _ = settle_place(z, curves, places, k, counters, 0)
     thickness = thickness_between(curves, places.piece[k], places.xi[k], places.foot[k], places.eta[k])
-    if places.at_point[k] or not np.isfinite(room[0, k]):
+    if places.at_point[k] or not np.isfinite(gap):
         places.side[k] = 0.0
-    elif room[0, k] + thickness < -depth_beyond(curves, places.piece[k], thickness):
+    elif gap + thickness < -depth_beyond(curves, places.piece[k], thickness):
         places.side[k] *= -1.0
     places.foot[k], places.eta[k], places.at_point[k] = foot, eta, at_point
 
@@ -242,7 +240,6 @@ def contact_places(
     count = fixed.piece.size
     moving = np.flatnonzero(old.moves & (curves.angle[old.piece] >= 0))
     known, marks = matched(curves, fixed, old), np.zeros(count + moving.size, np.bool_)
-    room, weights = np.empty((2, count)), np.empty((4, 2, STENCIL))
     for k in range(count):
         curve, j = fixed.curve[k], known[k]
         between = not sites.rigid[curve] and not sites.rigid[fixed.other[k]] and curve != fixed.other[k]
@@ -253,7 +250,7 @@ def contact_places(
             if j >= 0 and (keep_sides[j] or old.side[j] != 0.0):
                 fixed.side[k] = old.side[j]
             if j < 0 or not keep_sides[j]:
-                _turn_side(z, curves, fixed, k, counters, room, weights)
+                _turn_side(z, curves, fixed, k, counters)
         if curves.angle[fixed.piece[k]] < 0:
             fixed.side[k] = corner_sides[curve]
     marks[count:] = closed[moving]

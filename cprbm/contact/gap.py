@@ -47,8 +47,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from cprbm.chain import compiled
-from cprbm.contact.closest import curve_jet, curve_point, lost_at, thickness_between
+from cprbm.chain import compiled, compiled_inner
+from cprbm.contact.closest import curve_jet, curve_point, lost_at, thickness_between, weight_at
 from cprbm.contact.curve import STENCIL, CurveArrays
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -171,15 +171,17 @@ class Row(NamedTuple):
     shift: float
 
 
-@compiled
-def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int, weights: Array) -> Frame:  # pragma: no cover
-    """Derivatives at a place with known foot; ``weights`` (4, 2, STENCIL) keeps the weights of C_A, C_B, C_A', C_B'."""
+@compiled_inner
+def gap_frame(z: Array, curves: CurveArrays, places: Places, k: int) -> Frame:  # pragma: no cover
+    """Derivatives at a place with known foot."""
     piece, xi, foot, eta, side = places.piece[k], places.xi[k], places.foot[k], places.eta[k], places.side[k]
-    ax, ay, ux, uy, wx, wy = curve_jet(z, curves, piece, xi, weights[0], weights[2])
-    bx, by, vx, vy, kx, ky = curve_jet(z, curves, foot, eta, weights[1], weights[3])
+    ax, ay, ux, uy, wx, wy = curve_jet(z, curves, piece, xi)
+    bx, by, vx, vy, kx, ky = curve_jet(z, curves, foot, eta)
     rx, ry = ax - bx, ay - by
     force = places.force[k] if places.moves[k] else 0.0
-    own, own1, own2, other, other1, other2 = _lost(curves, places, k)
+    # a fixed place loses nothing
+    own, own1, own2 = _lost(curves, piece, xi, 1.0 * places.moves[k])
+    other, other1, other2 = _lost(curves, foot, eta, 1.0 * places.moves[k])
     thickness = thickness_between(curves, piece, xi, foot, eta)
     if places.at_point[k]:
         other1 = 0.0
@@ -217,61 +219,51 @@ def touching_points(
     z: Array, curves: CurveArrays, places: Places, which: Ints
 ) -> tuple[Array, Array]:  # pragma: no cover
     """Points (k, 2, 2) of some places on both curves, and normals (k, 2) from the feet to the places."""
-    points, normals, weights = np.empty((which.size, 2, 2)), np.empty((which.size, 2)), np.empty((4, 2, STENCIL))
+    points, normals = np.empty((which.size, 2, 2)), np.empty((which.size, 2))
     for i in range(which.size):
         k = which[i]
-        frame = gap_frame(z, curves, places, k, weights)
+        frame = gap_frame(z, curves, places, k)
         normals[i, 0], normals[i, 1] = frame.nx, frame.ny
-        points[i, 0] = curve_point(z, curves, places.piece[k], places.xi[k], weights[0])
-        points[i, 1] = curve_point(z, curves, places.foot[k], places.eta[k], weights[0])
+        points[i, 0] = curve_point(z, curves, places.piece[k], places.xi[k])
+        points[i, 1] = curve_point(z, curves, places.foot[k], places.eta[k])
     return points, normals
 
 
-@compiled
-def _lost(
-    curves: CurveArrays, places: Places, k: int
-) -> tuple[float, float, float, float, float, float]:  # pragma: no cover
-    """c_A, c_A', c_A'' and c_B, c_B', c_B''; zeros for a fixed place."""
-    if not places.moves[k]:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    piece, xi, foot, eta = places.piece[k], places.xi[k], places.foot[k], places.eta[k]
-    return (
-        lost_at(curves, piece, xi, 0),
-        lost_at(curves, piece, xi, 1),
-        lost_at(curves, piece, xi, 2),
-        lost_at(curves, foot, eta, 0),
-        lost_at(curves, foot, eta, 1),
-        lost_at(curves, foot, eta, 2),
-    )
+@compiled_inner
+def _lost(curves: CurveArrays, piece: int, xi: float, share: float) -> tuple[float, float, float]:  # pragma: no cover
+    """A ``share`` of c, c' and c''."""
+    c, slope, bend = lost_at(curves, piece, xi, 0), lost_at(curves, piece, xi, 1), lost_at(curves, piece, xi, 2)
+    return share * c, share * slope, share * bend
 
 
-@compiled
-def _add(out: Array, begin: int, weights: Array, vx: float, vy: float, factor: float) -> None:  # pragma: no cover
-    """Add factor v·dC to a vector over the nodes, dC with the given weights."""
+@compiled_inner
+def _add(
+    out: Array, curves: CurveArrays, piece: int, xi: float, order: int, vx: float, vy: float, factor: float
+) -> None:  # pragma: no cover
+    """Add factor v·dC to a vector over the nodes of a piece, or factor v·dC' with ``order`` 1."""
     for i in range(STENCIL):
-        a, b = weights[0, i], weights[1, i]
-        out[begin + 2 * i] += factor * (vx * a + vy * b)
-        out[begin + 2 * i + 1] += factor * (vy * a - vx * b)
+        a, b = weight_at(curves, piece, i, xi, order)
+        out[2 * i] += factor * (vx * a + vy * b)
+        out[2 * i + 1] += factor * (vy * a - vx * b)
 
 
-@compiled
-def gap_row(
-    z: Array, curves: CurveArrays, places: Places, k: int, vectors: Array, weights: Array
-) -> Row:  # pragma: no cover
-    """Row of a place; writes vectors (5, LOCAL). ``weights`` (4, 2, STENCIL) is scratch space."""
-    f = gap_frame(z, curves, places, k, weights)
-    at_b, force = 2 * STENCIL, places.force[k]
+@compiled_inner
+def gap_row(z: Array, curves: CurveArrays, places: Places, k: int, vectors: Array) -> Row:  # pragma: no cover
+    """Row of a place; writes vectors (5, LOCAL)."""
+    f = gap_frame(z, curves, places, k)
+    piece, xi, foot, eta, force = places.piece[k], places.xi[k], places.foot[k], places.eta[k], places.force[k]
     vectors[:] = 0.0
-    _add(vectors[GRADIENT], 0, weights[0], f.nx, f.ny, 1.0)
-    _add(vectors[GRADIENT], at_b, weights[1], f.nx, f.ny, -1.0)
-    _add(vectors[TANGENT], 0, weights[0], f.tx, f.ty, 1.0)
-    _add(vectors[TANGENT], at_b, weights[1], f.tx, f.ty, -1.0)
+    of_a, of_b = vectors[:, : 2 * STENCIL], vectors[:, 2 * STENCIL :]
+    _add(of_a[GRADIENT], curves, piece, xi, 0, f.nx, f.ny, 1.0)
+    _add(of_b[GRADIENT], curves, foot, eta, 0, f.nx, f.ny, -1.0)
+    _add(of_a[TANGENT], curves, piece, xi, 0, f.tx, f.ty, 1.0)
+    _add(of_b[TANGENT], curves, foot, eta, 0, f.tx, f.ty, -1.0)
     if not places.at_point[k]:
-        _add(vectors[TURN], at_b, weights[3], f.nx, f.ny, 1.0)
+        _add(of_b[TURN], curves, foot, eta, 1, f.nx, f.ny, 1.0)
     value, by_force, shift = f.gap + force * f.lost, f.lost + force * f.by_force, 0.0
     if places.moves[k] and f.curvature != 0.0:
         shift = -1.0 / f.curvature
-        _add(vectors[SHIFT], 0, weights[2], f.nx, f.ny, 1.0)
+        _add(of_a[SHIFT], curves, piece, xi, 1, f.nx, f.ny, 1.0)
         for i in range(LOCAL):
             vectors[SHIFT, i] += f.along * (f.qq * vectors[TANGENT, i] + f.qe * vectors[TURN, i])
             vectors[GRADIENT, i] += shift * f.slope * vectors[SHIFT, i]
@@ -283,9 +275,9 @@ def gap_row(
     return Row(f, value, by_force + force * lean * f.slope_by_force, shift)
 
 
-@compiled
+@compiled_inner
 def local_indices(curves: CurveArrays, places: Places, k: int, index: Ints) -> None:  # pragma: no cover
     """Write the unknowns (LOCAL,) of a place's vectors; an unknown may come twice."""
-    a, b = curves.stencil[places.piece[k]], curves.stencil[places.foot[k]]
-    index[: 2 * STENCIL : 2], index[1 : 2 * STENCIL : 2] = a, a + 1
-    index[2 * STENCIL :: 2], index[2 * STENCIL + 1 :: 2] = b, b + 1
+    for i in range(STENCIL):
+        index[2 * i], index[2 * (STENCIL + i)] = curves.stencil[places.piece[k], i], curves.stencil[places.foot[k], i]
+        index[2 * i + 1], index[2 * (STENCIL + i) + 1] = index[2 * i] + 1, index[2 * (STENCIL + i)] + 1

@@ -6,9 +6,10 @@ unknowns follows from the linear equation of :mod:`cprbm.contact.gap`.
 
 import numpy as np
 
-from cprbm.chain import compiled
+from cprbm.chain import compiled, compiled_inner
 from cprbm.contact.closest import (
     ARRIVED,
+    GROUPS,
     TURNED_BACK,
     closest_chord,
     closest_of,
@@ -19,6 +20,7 @@ from cprbm.contact.closest import (
     depth_beyond,
     moved_along,
     thickness_between,
+    weight_at,
     write_chords,
 )
 from cprbm.contact.curve import STENCIL, CurveArrays
@@ -61,37 +63,36 @@ def find_feet(
 
     The distance of a place on a beam from the beam itself is inf where the beam has not turned back.
     """
-    weights, chords = np.empty((2, STENCIL)), np.empty((2 * curves.span.size, 5))
+    chords, waiting = np.empty((2 * curves.span.size, 5)), np.empty(GROUPS, np.int64)
     near = np.full(curves.first.size, -1)
     for k in range(places.piece.size):
         piece, other, least_turn = places.piece[k], places.other[k], 0.0
         if near[other] < 0:
-            write_chords(z, curves, other, chords, weights)
+            write_chords(z, curves, other, chords)
             near[other] = curves.first[other]
         if places.curve[k] == other:
             least_turn = TURNED_BACK
-        x, y = curve_point(z, curves, piece, places.xi[k], weights)
+        x, y = curve_point(z, curves, piece, places.xi[k])
         counters[SEARCHES] += 1
         turn = z[curves.angle[piece]], least_turn
-        foot, eta, distance[k] = closest_of(z, curves, other, chords, near[other], x, y, turn)
+        foot, eta, distance[k] = closest_of(z, curves, other, chords, waiting, near[other], x, y, turn)
         places.foot[k], places.eta[k], near[other] = foot, eta, foot
 
 
 @compiled
 def find_bends(z: Array, curves: CurveArrays, places: Places, rounds: int) -> None:  # pragma: no cover
     """Move places on bends to the beams, from chord to chord and back in some rounds; write the feet."""
-    weights = np.empty((2, STENCIL))
     for k in range(places.piece.size):
         if curves.angle[places.piece[k]] >= 0 or curves.is_point[places.curve[k]]:
             continue
         for _ in range(rounds):
-            x, y = curve_point(z, curves, places.foot[k], places.eta[k], weights)
-            places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y, weights)
-            x, y = curve_point(z, curves, places.piece[k], places.xi[k], weights)
-            places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y, weights)
+            x, y = curve_point(z, curves, places.foot[k], places.eta[k])
+            places.piece[k], places.xi[k], _ = closest_chord(z, curves, places.curve[k], x, y)
+            x, y = curve_point(z, curves, places.piece[k], places.xi[k])
+            places.foot[k], places.eta[k], _ = closest_chord(z, curves, places.other[k], x, y)
 
 
-@compiled
+@compiled_inner
 def is_no_contact(z: Array, curves: CurveArrays, places: Places, k: int) -> bool:  # pragma: no cover
     """True if a place cannot touch: a beam that has not turned back to itself, a joint where two beams cross steeply.
 
@@ -105,39 +106,29 @@ def is_no_contact(z: Array, curves: CurveArrays, places: Places, k: int) -> bool
     return bool(between and min(curves.angle[piece], curves.angle[foot]) >= 0 and abs(np.sin(turn)) > STEEP)
 
 
-@compiled
+@compiled_inner
 def settle_place(
-    z: Array,
-    curves: CurveArrays,
-    places: Places,
-    k: int,
-    gaps: Array,
-    curvatures: Array,
-    counters: Ints,
-    steps: int,
-    weights: Array,
-) -> None:  # pragma: no cover
-    """Move the foot of a place, and in at most ``steps`` a moving place; write gap and curvature."""
-    gaps[k], curvatures[k] = np.inf, 0.0
-    last, longest = 0.0, LONGEST_STEP
+    z: Array, curves: CurveArrays, places: Places, k: int, counters: Ints, steps: int
+) -> tuple[float, float]:  # pragma: no cover
+    """Gap and curvature of a place, after moves of the foot, and in at most ``steps`` of a moving place."""
+    gap, curvature, last, longest = np.inf, 0.0, 0.0, LONGEST_STEP
     for _ in range(max(steps, 1)):
-        x, y = curve_point(z, curves, places.piece[k], places.xi[k], weights[0])
+        x, y = curve_point(z, curves, places.piece[k], places.xi[k])
         force = places.force[k] if places.moves[k] else 0.0
         foot, eta, side = places.foot[k], places.eta[k], places.side[k]
         places.foot[k], places.eta[k], places.at_point[k] = closest_point(
-            z, curves, places.other[k], x, y, foot, eta, force, side, weights[0]
+            z, curves, places.other[k], x, y, foot, eta, force, side
         )
         if is_no_contact(z, curves, places, k):
             break
-        f = gap_frame(z, curves, places, k, weights)
+        f = gap_frame(z, curves, places, k)
         counters[GAPS] += 1
-        gaps[k], curvatures[k] = f.gap, f.curvature / curves.span[places.piece[k]] ** 2
+        gap, curvature = f.gap, f.curvature / curves.span[places.piece[k]] ** 2
         if not places.moves[k] or f.curvature == 0.0:
             break
         if steps == 0:
-            if curves.angle[places.piece[k]] < 0:
-                break
-            gaps[k] -= 0.5 * f.slope * f.slope / abs(f.curvature)
+            # a place on a bend of an edge stays
+            gap -= 0.5 * f.slope * f.slope / abs(f.curvature) * (curves.angle[places.piece[k]] >= 0)
             break
         step = -f.slope / abs(f.curvature)
         # beside a corner of the other beam's thickness the slope jumps: every step back halves the longest step
@@ -146,6 +137,7 @@ def settle_place(
         places.piece[k], places.xi[k], _ = moved_along(curves, places.curve[k], places.piece[k], places.xi[k], last)
         if abs(last) < ARRIVED:
             break
+    return gap, curvature
 
 
 @compiled
@@ -156,9 +148,8 @@ def settle(
 
     Without steps the gap of a place that moves along a beam is the minimum of the parabola.
     """
-    weights = np.empty((4, 2, STENCIL))
     for k in range(places.piece.size):
-        settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
+        gaps[k], curvatures[k] = settle_place(z, curves, places, k, counters, steps)
 
 
 @compiled
@@ -178,15 +169,26 @@ def settle_near(
     A place and the curve beneath move by at most the sum of the weights' sizes times the nodes' way.  The weights grow
     along a rigid curve; half the gap leaves them room.  Moving and sharing places and beams with themselves have none.
     """
-    weights, sharing = np.empty((4, 2, STENCIL)), places.shares != 0
+    sharing = places.shares != 0
     sharing[(np.arange(closed.size) + places.shares)[sharing]] = True
     for k in range(closed.size):
         if room[k] > 0.0 and not closed[k]:
             continue
-        settle_place(z, curves, places, k, gaps, curvatures, counters, steps, weights)
+        gaps[k], curvatures[k] = settle_place(z, curves, places, k, counters, steps)
         room[k] = 0.0
         if not (places.moves[k] or sharing[k] or places.curve[k] == places.other[k]):
-            room[k] = 0.5 * gaps[k] / np.abs(weights[:2]).sum()
+            sway = sway_of(curves, places.piece[k], places.xi[k]) + sway_of(curves, places.foot[k], places.eta[k])
+            room[k] = 0.5 * gaps[k] / sway
+
+
+@compiled_inner
+def sway_of(curves: CurveArrays, piece: int, xi: float) -> float:  # pragma: no cover
+    """Largest way of a point of a curve over the largest way of a node in x or y: the sum of the weights' sizes."""
+    sway = 0.0
+    for i in range(STENCIL):
+        a, b = weight_at(curves, piece, i, xi, 0)
+        sway += abs(a) + abs(b)
+    return sway
 
 
 @compiled
@@ -204,12 +206,12 @@ def move_places(
         share: of the change that the unknowns are given.
         limit: largest change of a place, in pieces.
     """
-    vectors, weights, index = np.empty((5, LOCAL)), np.empty((4, 2, STENCIL)), np.empty(LOCAL, np.int64)
+    vectors, index = np.empty((5, LOCAL)), np.empty(LOCAL, np.int64)
     largest = 0.0
     for k in range(places.piece.size):
         if not places.moves[k]:
             continue
-        row = gap_row(z, curves, places, k, vectors, weights)
+        row = gap_row(z, curves, places, k, vectors)
         if row.shift == 0.0:
             continue
         local_indices(curves, places, k, index)
@@ -225,11 +227,11 @@ def move_places(
 @compiled
 def separations(z: Array, curves: CurveArrays, places: Places) -> Array:  # pragma: no cover
     """Vectors (k, 2) from the feet to the places; zero for places that cannot touch."""
-    vectors, weights = np.zeros((places.piece.size, 2)), np.empty((2, STENCIL))
+    vectors = np.zeros((places.piece.size, 2))
     for k in range(places.piece.size):
         if not is_no_contact(z, curves, places, k):
-            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], weights)
-            bx, by = curve_point(z, curves, places.foot[k], places.eta[k], weights)
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k])
+            bx, by = curve_point(z, curves, places.foot[k], places.eta[k])
             vectors[k, 0], vectors[k, 1] = ax - bx, ay - by
     return vectors
 
@@ -258,14 +260,13 @@ def _sweeps_over(
 
     A point near the beam's neutral line has no side: a common joint, and a line that touches.
     """
-    weights = np.empty((2, STENCIL))
     for z in (before, after):
-        cx, cy = curve_point(z, curves, point, at, weights)
-        piece, xi, _ = closest_chord(z, curves, beam, cx, cy, weights)
-        ax, ay = curve_point(before, curves, piece, xi, weights)
-        bx, by = curve_point(before, curves, point, at, weights)
-        cx, cy = curve_point(after, curves, piece, xi, weights)
-        dx, dy = curve_point(after, curves, point, at, weights)
+        cx, cy = curve_point(z, curves, point, at)
+        piece, xi, _ = closest_chord(z, curves, beam, cx, cy)
+        ax, ay = curve_point(before, curves, piece, xi)
+        bx, by = curve_point(before, curves, point, at)
+        cx, cy = curve_point(after, curves, piece, xi)
+        dx, dy = curve_point(after, curves, point, at)
         nearest = min(np.hypot(ax - bx, ay - by), np.hypot(cx - dx, cy - dy))
         beside = nearest > depth_beyond(curves, piece, thickness_between(curves, piece, xi, point, at))
         if beside and (ax - bx) * (cx - dx) + (ay - by) * (cy - dy) < 0.0:
@@ -276,9 +277,8 @@ def _sweeps_over(
 @compiled
 def choose_sides(z: Array, curves: CurveArrays, places: Places) -> None:  # pragma: no cover
     """Write the present sides of places of a beam on itself; the feet must be found."""
-    weights = np.empty((2, STENCIL))
     for k in range(places.piece.size):
         if places.curve[k] == places.other[k] and not is_no_contact(z, curves, places, k):
-            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k], weights)
-            bx, by, tx, ty, _, _ = curve_jet(z, curves, places.foot[k], places.eta[k], weights, weights)
+            ax, ay = curve_point(z, curves, places.piece[k], places.xi[k])
+            bx, by, tx, ty, _, _ = curve_jet(z, curves, places.foot[k], places.eta[k])
             places.side[k] = 1.0 if (ay - by) * tx - (ax - bx) * ty >= 0.0 else -1.0

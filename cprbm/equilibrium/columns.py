@@ -25,13 +25,12 @@ A column has entries at the nodes of two pieces, at most six nodes per piece, an
 
 import numpy as np
 
-from cprbm.chain import compiled
+from cprbm.chain import compiled, compiled_inner
 from cprbm.contact import (
     COUPLING,
     GRADIENT,
     LOCAL,
     SHIFT,
-    STENCIL,
     TANGENT,
     TURN,
     Columns,
@@ -62,7 +61,7 @@ def gap_rates(geometry: Geometry, z: Array, places: Places, which: Flags, motion
     return np.asarray(-np.bincount(columns.entry_column, moved, len(columns.diagonal))[: len(columns.values)])
 
 
-@compiled
+@compiled_inner
 def squares_of(
     a: float, b: float, c: float
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:  # pragma: no cover
@@ -82,12 +81,12 @@ def contact_columns(
     values, diagonal = np.zeros(forces), np.zeros(forces + MOTIONS * count)
     most = (1 + MOTIONS) * LOCAL * count
     entries = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
-    vectors, weights, index = np.empty((5, LOCAL)), np.empty((4, 2, STENCIL)), np.empty(LOCAL, np.int64)
+    vectors, index = np.empty((5, LOCAL)), np.empty(LOCAL, np.int64)
     used, at = 0, forces
     for k in range(closed.size):
         if not closed[k]:
             continue
-        row = gap_row(z, curves, places, k, vectors, weights)
+        row = gap_row(z, curves, places, k, vectors)
         local_indices(curves, places, k, index)
         column, F = int(number[k + places.shares[k]]), places.force[k]
         values[column] += row.value
@@ -106,7 +105,7 @@ def contact_columns(
     return Columns(values, negative, diagonal[:at], np.zeros(at), of_entries[:used], unknown[:used], value[:used])
 
 
-@compiled
+@compiled_inner
 def _add_entries(
     entries: tuple[Ints, Ints, Array], used: int, column: int, index: Ints, vector: Array
 ) -> int:  # pragma: no cover

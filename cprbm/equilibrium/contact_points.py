@@ -194,7 +194,8 @@ def _come_near(geometry: Geometry, solved: Touched) -> Contacts | None:
     z, contacts = solved.state.z, solved.state.contacts
     late = near_pairs(z, geometry.arrays, geometry.sites.columns, REACH, contacts.counters)
     late[list(contacts.kept_open)] = False
-    late[contacts.places.pair] &= geometry.has_faces[contacts.places.pair]
+    faces = geometry.sites.rigid & (geometry.arrays.last > geometry.arrays.first)
+    late[contacts.places.pair] &= faces[geometry.sites.columns[contacts.places.pair, 1]]
     if not late.any():
         return None
     new = with_fixed_places(geometry, z, contacts)

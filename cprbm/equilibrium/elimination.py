@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cprbm.chain import PER_LINK, Blocks, RowArrays, compiled
+from cprbm.chain import PER_LINK, Blocks, RowArrays, compiled, compiled_inner
 from cprbm.contact import Columns
 from cprbm_scene.answer import Array, Flags, Ints
 
@@ -110,10 +110,13 @@ def factored_chains(beams: Beams, blocks: Blocks) -> tuple[Chains, int]:  # prag
     return Chains(blocks.coupling, blocks.compliance, pivot, ratio), negative
 
 
-@compiled
-def _sum_forces(coupling: Array, m: int, x: Array) -> Array:  # pragma: no cover
-    """Resultants (2, columns) at the first node; the force n_j takes the place of p_{j+1}, θ loses the forces' part."""
-    force, count = x[5 * m : 5 * m + 2].copy(), x.shape[1]
+@compiled_inner
+def _sum_forces(coupling: Array, m: int, force: Array, x: Array) -> None:  # pragma: no cover
+    """Turn forces (2, columns) on the last node into resultants at the first node.
+
+    The force n_j takes the place of p_{j+1}, and θ loses the forces' part.
+    """
+    count = x.shape[1]
     for j in range(m - 1, -1, -1):
         i, c = 5 * j, coupling[j]
         for axis in range(2):
@@ -126,10 +129,9 @@ def _sum_forces(coupling: Array, m: int, x: Array) -> Array:  # pragma: no cover
                     x[5 * link + 4, q] -= factor * n[q]
             for q in range(count):
                 n[q] += x[i + axis, q]
-    return force
 
 
-@compiled
+@compiled_inner
 def _solve_angles(pivot: Array, ratio: Array, m: int, x: Array) -> None:  # pragma: no cover
     """Solve T θ = b in place."""
     count = x.shape[1]
@@ -143,7 +145,7 @@ def _solve_angles(pivot: Array, ratio: Array, m: int, x: Array) -> None:  # prag
             x[5 * j + 4, q] = x[5 * j + 4, q] * pivot[j] - ratio[j + 1] * x[5 * j + 9, q]
 
 
-@compiled
+@compiled_inner
 def _sum_places(coupling: Array, compliance: Array, m: int, place: Array, x: Array) -> None:  # pragma: no cover
     """Write forces and positions behind the first node at ``place`` (2, columns), which is lost."""
     count = x.shape[1]
@@ -174,7 +176,8 @@ def solve_columns(beams: Beams, beam: int, chains: Chains, x: Array) -> None:  #
     """
     m, start = beams.links[beam], beams.first_link[beam]
     end = start + m
-    place = _sum_forces(chains.coupling[start:end], m, x)
+    place = x[5 * m : 5 * m + 2].copy()
+    _sum_forces(chains.coupling[start:end], m, place, x)
     _solve_angles(chains.pivot[start:end], chains.ratio[start:end], m, x)
     for axis in range(2):
         place[axis] /= beams.springs[beam, axis]

@@ -4,7 +4,7 @@ from math import isfinite
 
 import numpy as np
 
-from cprbm.chain import compiled
+from cprbm.chain import compiled, compiled_inner
 from cprbm.contact import BEND, CORNER, Columns, CurveArrays, Places, lost_at, move_places, settle_near
 from cprbm.equilibrium.columns import contact_columns
 from cprbm.equilibrium.linear import Numbers, correction, reduced_system, restored
@@ -115,7 +115,7 @@ def arcs_of(curves: CurveArrays, places: Places) -> Array:  # pragma: no cover
     return arcs
 
 
-@compiled
+@compiled_inner
 def beam_place(curves: CurveArrays, places: Places, k: int) -> tuple[int, int, float]:  # pragma: no cover
     """Curve, piece and parameter of a place on the beam: of the foot of a corner."""
     if curves.angle[places.piece[k]] < 0:

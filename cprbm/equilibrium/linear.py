@@ -83,9 +83,7 @@ def add_gradient(
     for j in range(m.angles.size):
         blocks.turn[j] += stiffness[j]
         gradient[m.angles[j]] += stiffness[j] * (z[m.angles[j]] - anchor[j])
-    values = row_values(z, m.rows)
-    for r in range(driven.size):
-        gradient[first + r] = values[r] - target[r] if driven[r] else 0.0
+    gradient[first:] = np.where(driven, row_values(z, m.rows) - target, 0.0)
     return blocks
 
 
@@ -112,11 +110,8 @@ def restored(
     """Turn the chains' solution ``load`` into the whole solution, in place; ``solution`` belongs to the border."""
     for beam in range(beams.first.size):
         y = solution[coupling.reached[coupling.begin[beam] : coupling.begin[beam + 1]]]
-        at, first = coupling.offset[beam], beams.first[beam]
-        for i in range(first, first + 2 + PER_LINK * beams.links[beam]):
-            for q in range(y.size):
-                load[i] -= coupling.solved[at + q] * y[q]
-            at += y.size
+        X = coupling.solved[coupling.offset[beam] : coupling.offset[beam + 1]].reshape((-1, y.size))
+        load[beams.first[beam] : beams.first[beam] + len(X)] -= X @ y
     load[border.first :] = solution[: load.size - border.first]
 
 

@@ -15,7 +15,6 @@ from cprbm.contact import (
     settle,
 )
 from cprbm.contact.closest import closest_chord, closest_point
-from cprbm.contact.curve import STENCIL
 from tests.cprbm.contact.workshop import all_places, at, mechanism, random_state, settled
 
 SAMPLES = 200_001
@@ -35,14 +34,13 @@ def test_closest_points_of_random_places(name):
     z = random_state(m, geometry, rest, 4, 1e-3)
     points, thickness = sampled(curve, z)
     rng = np.random.default_rng(8)
-    weights = np.empty((2, STENCIL))
     tested = at_points = 0
     for _ in range(60):
         near = points[rng.integers(len(points))]
         x = near + 0.08 * complex(*rng.normal(size=2))
         reach = np.abs(points - x) - thickness
-        piece, eta, _ = closest_chord(z, geometry.arrays, number, x.real, x.imag, weights)
-        piece, eta, at_point = closest_point(z, geometry.arrays, number, x.real, x.imag, piece, eta, 0.0, 0.0, weights)
+        piece, eta, _ = closest_chord(z, geometry.arrays, number, x.real, x.imag)
+        piece, eta, at_point = closest_point(z, geometry.arrays, number, x.real, x.imag, piece, eta, 0.0, 0.0)
         local = piece - geometry.arrays.first[number]
         s = curve.arcs[local] + eta * np.diff(curve.arcs)[local]
         found = abs(at(curve, z, np.array([s]))[0] - x) - np.interp(s, curve.arcs, curve.half_thickness)
@@ -74,16 +72,14 @@ def test_convex_corners_hold_the_foot():
     """Beside a corner of a triangle, within the angle of its two normals, the closest point is the corner."""
     _, geometry, rest = mechanism()
     number = next(k for k, curve in enumerate(geometry.curves) if curve.name == "contact line")
-    curve, weights = geometry.curves[number], np.empty((2, STENCIL))
+    curve = geometry.curves[number]
     corner = at(curve, rest, curve.arcs[1:2])[0]
     directions = np.diff(at(curve, rest, curve.arcs))[:2]
     outward = directions[0] / abs(directions[0]) - directions[1] / abs(directions[1])
     for share in (0.01, 0.03):
         x = corner + share * outward
         begin = geometry.arrays.first[number]
-        piece, eta, at_point = closest_point(
-            rest, geometry.arrays, number, x.real, x.imag, begin, 0.4, 0.0, 0.0, weights
-        )
+        piece, eta, at_point = closest_point(rest, geometry.arrays, number, x.real, x.imag, begin, 0.4, 0.0, 0.0)
         assert at_point
         assert (piece - begin, eta) == (1, 0.0)
 

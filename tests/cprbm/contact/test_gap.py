@@ -14,7 +14,6 @@ from cprbm.contact import (
     GRADIENT,
     LOCAL,
     SHIFT,
-    STENCIL,
     TANGENT,
     TURN,
     gap_frame,
@@ -33,7 +32,7 @@ FORCE = 40.0
 def vectors_over_unknowns(geometry, z, places, k):
     """Row, and its vectors over all unknowns (5, unknowns)."""
     vectors, index = np.empty((5, LOCAL)), np.empty(LOCAL, dtype=np.int64)
-    row = gap_row(z, geometry.arrays, places, k, vectors, np.empty((4, 2, STENCIL)))
+    row = gap_row(z, geometry.arrays, places, k, vectors)
     local_indices(geometry.arrays, places, k, index)
     spread = np.zeros((5, len(z)))
     for vector, whole in zip(vectors, spread, strict=True):
@@ -144,7 +143,7 @@ def test_points_with_lost_compliance_are_variational(sampled, name):
         def energy(z, force=FORCE, places=places):
             near = single(places, 0, force=force)
             settled(geometry, z, near, FINDING)
-            frame = gap_frame(z, geometry.arrays, near, 0, np.empty((4, 2, STENCIL)))
+            frame = gap_frame(z, geometry.arrays, near, 0)
             return force * (frame.gap + 0.5 * force * frame.lost)
 
         def value(z, force=FORCE, places=places):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cprbm.contact import STENCIL, gap_frame, is_movable, new_counters, on_edge, settle, settle_near, taken
+from cprbm.contact import gap_frame, is_movable, new_counters, on_edge, settle, settle_near, taken
 from cprbm.equilibrium.factors import factorise
 from cprbm.equilibrium.system import system_of
 from tests.cprbm.contact.workshop import FINDING, all_places, mechanism, settled
@@ -40,8 +40,7 @@ def random_contact(seed):
     inside &= (curvatures > 0.5) & [is_movable(geometry.arrays, geometry.sites, places, k) for k in range(len(gaps))]
     possible = np.isfinite(gaps) & (~places.moves | corner | inside) & (corner | ~bend)
     # a foot near the centre of its curve's curvature magnifies the round-off of the differences
-    weights = np.empty((4, 2, STENCIL))
-    frames = [gap_frame(state.z, geometry.arrays, places, k, weights) for k in range(len(gaps))]
+    frames = [gap_frame(state.z, geometry.arrays, places, k) for k in range(len(gaps))]
     possible &= np.array([abs(frame.ee) for frame in frames]) * geometry.arrays.span[places.foot] ** 2 < FOCUS
     leaders, closed = np.arange(len(gaps)) + places.shares, np.zeros(len(gaps), dtype=bool)
     closed[random.permutation(np.flatnonzero(possible))[:CLOSED]] = True
