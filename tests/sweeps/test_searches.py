@@ -136,7 +136,7 @@ def stiffness_of(sample):
 DISTRIBUTIONS = {name: lognorm(0.01, scale=centre) for name, centre in CENTRES.items()}
 
 
-def test_indices_of_a_stiffness_are_the_squares_of_the_exponents():
+def test_indices_and_rows_of_a_stiffness_are_the_closed_form(scene):
     """ln k has the exponents 1, 1, 3, -3 of four lognormals.
 
     With equal deviations the indices are the squares of the exponents over their sum: 1/20, 1/20, 9/20, 9/20.
@@ -146,9 +146,6 @@ def test_indices_of_a_stiffness_are_the_squares_of_the_exponents():
         for interval, exact in zip(part, (1 / 20, 1 / 20, 9 / 20, 9 / 20), strict=True):
             assert interval.low <= exact <= interval.high
             assert interval.high - interval.low < 0.3
-
-
-def test_rows_of_a_scatter_are_the_closed_form_at_the_points_of_the_design(scene):
     question, choices = read(scene).with_parameters(P=1e-3), Choices(links=4)
     asked = study(question, DISTRIBUTIONS, 16, "cprbm", choices, indexed=True)
     with workers_on("local:1") as workers:
@@ -212,46 +209,48 @@ TABLES = {
     "": "found 0 rows below the names (none)",
 }
 WRONG = [
-    ("sweep", "", "--vary thickness=1mm..2mm:3", "names no parameter"),
-    ("sweep", "", "--vary t=1N..2N:3", "a finite number, as 1.9mm"),
-    ("sweep", "", "--vary t=1mm..5mm:3", "a number from 1 to 3 mm"),
-    ("sweep", "", "--vary t=1mm..2mm:1", "two values or more"),
-    ("sweep", "", "--vary t=1mm..2mm", "without a number of values"),
-    ("sweep", "", f"{VARY} --vary t=1mm..2mm:4", "a parameter once"),
-    ("sweep", "", "--vary L=-100..100:3", "1 of 3 points without a valid scene"),
-    ("sweep", "", "--sample halton:9", "sobol:K or lhs:K"),
-    ("sweep", "", "--sample absent.csv", "No such file"),
-    ("sweep", "", f"{VARY} --shard 4/3", "I/N with I from 1 to N"),
-    ("sweep", "", f"{VARY} --on remote", "local:N"),
-    ("sweep", "", "", "neither --vary nor --sample"),
-    *(("sweep", text, "--sample CSV", f"points.csv: {said}") for text, said in TABLES.items()),
-    ("optimise", '[goal]\nprobe = "C.displacement"\n', "--goal TOML", "'B.displacement'"),
-    ("optimise", '[goal]\nprobe = "B.displacement"\n', "--goal TOML", "allowed: 'x', 'y'"),
-    ("optimise", f'{ASK}aim = "reach"\n', "--goal TOML", "a value with aim = 'reach'"),
-    ("optimise", f"[[limits]]\n{DEFLECTION}", "--goal TOML", "neither least nor most"),
+    ("sweep alone", "", "--vary thickness=1mm..2mm:3", "names no parameter"),
+    ("sweep alone", "", "--vary t=1N..2N:3", "a finite number, as 1.9mm"),
+    ("sweep alone", "", "--vary t=1mm..5mm:3", "a number from 1 to 3 mm"),
+    ("sweep alone", "", "--vary t=1mm..2mm:1", "two values or more"),
+    ("sweep alone", "", "--vary t=1mm..2mm", "without a number of values"),
+    ("sweep alone", "", f"{VARY} --vary t=1mm..2mm:4", "a parameter once"),
+    ("sweep alone", "", "--vary L=-100..100:3", "1 of 3 points without a valid scene"),
+    ("sweep alone", "", "--sample halton:9", "sobol:K or lhs:K"),
+    ("sweep alone", "", "--sample absent.csv", "No such file"),
+    ("sweep alone", "", f"{VARY} --shard 4/3", "I/N with I from 1 to N"),
+    ("sweep alone", "", f"{VARY} --on remote", "local:N"),
+    ("sweep alone", "", "", "neither --vary nor --sample"),
+    *(("sweep alone", text, "--sample CSV", f"points.csv: {said}") for text, said in TABLES.items()),
+    ("optimise linear", '[goal]\nprobe = "C.displacement"\n', "--goal TOML", "'B.displacement'"),
+    ("optimise linear", '[goal]\nprobe = "B.displacement"\n', "--goal TOML", "allowed: 'x', 'y'"),
+    ("optimise linear", f'{ASK}aim = "reach"\n', "--goal TOML", "a value with aim = 'reach'"),
+    ("optimise linear", f"[[limits]]\n{DEFLECTION}", "--goal TOML", "neither least nor most"),
     (
-        "optimise",
+        "optimise linear",
         f"[[limits]]\n{DEFLECTION}least = 2\nmost = 1\n",
         "--goal TOML",
         "limits[0].least: found 2; allowed: a number of at most 1",
     ),
-    ("optimise", "", "--goal TOML", "[goal] with a probe"),
-    ("optimise", ASK, "--goal TOML --vary t=1N..2N", "a finite number, as 1.9mm"),
-    ("optimise", ASK, "--goal TOML --vary d=1..2", "names no parameter"),
-    ("tolerance", "", "--sobol", "two or more"),
-    ("tolerance", "", "--samples 1000", "a power of 2"),
-    ("tolerance", '[[limits]]\nprobe = "C.displacement"\nmost = 1.0\n', "--limits TOML", "limits[0].probe"),
-    ("tolerance", "", "--limits absent.toml", "File 'absent.toml' does not exist"),
-    ("tolerance", ASK, "--limits TOML", "limits: found nothing; allowed: [[limits]] with a probe"),
-    ("tolerance", "", "--on remote --samples 16", "local:N"),
-    ("tolerance", "", "--samples 16 --set t=2.99mm", "without a valid scene"),
+    ("optimise linear", "", "--goal TOML", "[goal] with a probe"),
+    ("optimise linear", ASK, "--goal TOML --vary t=1N..2N", "a finite number, as 1.9mm"),
+    ("optimise linear", ASK, "--goal TOML --vary d=1..2", "names no parameter"),
+    ("tolerance scattering", "", "--sobol", "two or more"),
+    ("tolerance scattering", "", "--samples 1000", "a power of 2"),
+    ("tolerance scattering", '[[limits]]\nprobe = "C.displacement"\nmost = 1.0\n', "--limits TOML", "limits[0].probe"),
+    ("tolerance scattering", "", "--limits absent.toml", "File 'absent.toml' does not exist"),
+    ("tolerance scattering", ASK, "--limits TOML", "limits: found nothing; allowed: [[limits]] with a probe"),
+    ("tolerance scattering", "", "--on remote --samples 16", "local:N"),
+    ("tolerance scattering", "", "--samples 16 --set t=2.99mm", "without a valid scene"),
+    ("tolerance alone", "", "", "tolerance = { normal"),
 ]
 
 
-@pytest.mark.parametrize(("command", "text", "options", "said"), WRONG)
-def test_a_wrong_question_is_a_sentence(written, tmp_path, capsys, command, text, options, said):
+@pytest.mark.parametrize(("asked", "text", "options", "said"), WRONG)
+def test_a_wrong_question_is_a_sentence(written, tmp_path, capsys, asked, text, options, said):
     """CSV and TOML are files with the text."""
-    scene = written("scene.toml", {"sweep": ALONE, "optimise": LINEAR, "tolerance": SCATTERING}[command])
+    command, name = asked.split()
+    scene = written("scene.toml", {"alone": ALONE, "linear": LINEAR, "scattering": SCATTERING}[name])
     files, out = {"CSV": "points.csv", "TOML": "asked.toml"}, tmp_path / "out"
     arguments = [str(written(files[each], text)) if each in files else each for each in options.split()]
     assert run([command, str(scene), "--out", str(out), *arguments]) == 2
@@ -259,8 +258,3 @@ def test_a_wrong_question_is_a_sentence(written, tmp_path, capsys, command, text
     assert said in error
     assert error.count("\n") == 1
     assert not out.exists()
-
-
-def test_a_scene_without_tolerances_is_refused(written, capsys):
-    assert run(["tolerance", str(written("cantilever.toml", ALONE))]) == 2
-    assert "tolerance = { normal" in capsys.readouterr().err

@@ -29,7 +29,6 @@ from comparisons.sweeps.outcome import Outcome
 from comparisons.sweeps.points import Axis
 from comparisons.sweeps.running import known_outcomes
 from cprbm_scene import read
-from tests.house.unprinted import without_printing
 from tests.sweeps.planted import Poisoned, called_here
 from tests.sweeps.scenes import CANTILEVER, table
 
@@ -53,15 +52,15 @@ def swept(scene, out, *options, solvers=None):
 
 
 def swept_here(scene, out, *options):
-    """A sweep in this process, with white figures."""
-    with pytest.MonkeyPatch.context() as patch, without_printing():
+    """A sweep in this process."""
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr(outcomes, "call_limited", called_here)
         return swept(scene, out, *options)
 
 
 @pytest.fixture(scope="module")
 def serial(scene, tmp_path_factory):
-    """Table of 6 points from this process."""
+    """Table of 6 points from this process, whose figures are printed."""
     folder = tmp_path_factory.mktemp("serial")
     assert swept_here(scene, folder, *GRID) == 0
     rows = table(folder)
@@ -121,16 +120,7 @@ def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(sce
     assert sum(row["key"] in known for row in table(tmp_path / "s", "last.csv")) == 6
 
 
-def test_a_number_that_is_constant_but_for_round_off_has_a_map(scene, tmp_path):
-    """The force at the clamp is the load, whatever the thickness and the length."""
-    text = scene.read_text("utf-8").replace('of = "B"\nquantity = "displacement"', 'of = "A"\nquantity = "reaction"')
-    (tmp_path / "reaction.toml").write_text(text, "utf-8")
-    assert swept(tmp_path / "reaction.toml", tmp_path / "s", "--vary", "t=1.9mm..2.1mm:2", "--vary", "L=90..110:2") == 0
-    assert len({row["value"] for row in table(tmp_path / "s") if row["component"] == "y"}) > 1
-    assert (tmp_path / "s" / "parameters.svg").exists()
-
-
-def test_figures_leave_out_numbers_that_do_not_depend_on_the_parameters(scene):
+def test_figures_leave_out_numbers_that_do_not_depend_on_the_parameters(scene, tmp_path):
     """The drop at the first station alone depends on the point; the shift is the same but for round-off."""
     record = {"stage": "load", "probe": "B.displacement", "branch": 0, "arc_length": None}
 
@@ -146,6 +136,12 @@ def test_figures_leave_out_numbers_that_do_not_depend_on_the_parameters(scene):
 
     assert shown(outcome(-3e-3, 0.0), outcome(-4e-3, 1e-16)) == ["B.displacement.y"]
     assert shown(outcome(-3e-3, 0.0)) == ["B.displacement.x", "B.displacement.y"]
+    # the force at the clamp is the load, whatever the thickness and the length: round-off alone still has a map
+    text = scene.read_text("utf-8").replace('of = "B"\nquantity = "displacement"', 'of = "A"\nquantity = "reaction"')
+    (tmp_path / "reaction.toml").write_text(text, "utf-8")
+    assert swept(tmp_path / "reaction.toml", tmp_path / "s", "--vary", "t=1.9mm..2.1mm:2", "--vary", "L=90..110:2") == 0
+    assert len({row["value"] for row in table(tmp_path / "s") if row["component"] == "y"}) > 1
+    assert (tmp_path / "s" / "parameters.svg").exists()
 
 
 def test_shards_merge_to_the_whole(scene, tmp_path):

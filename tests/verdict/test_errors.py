@@ -227,7 +227,7 @@ def beside(hinge, exact=EXACT, cprbm=C, fea=F):
     return compared(hinge, cprbm, fea, exact=exact)
 
 
-def test_a_true_error_is_the_distance_from_the_exact_value_in_rows_and_in_the_json(hinge):
+def test_true_errors_are_distances_from_the_exact_value_in_rows_the_json_and_tables(hinge):
     found = beside(hinge, replace(EXACT, until=9))
     energy = row_of(found, ENERGY, 0.603)
     assert energy.true_errors.cprbm == pytest.approx(2e-3 * abs(energy.exact[0]), rel=1e-9)
@@ -243,6 +243,11 @@ def test_a_true_error_is_the_distance_from_the_exact_value_in_rows_and_in_the_js
     assert row["exact"] == pytest.approx(0.9 * 0.603 - 0.1 * 0.403)
     assert missing["exact"] is missing["true_error"]["cprbm"] is missing["true_error"]["fea_bending"] is None
     assert rows["contact.centre", 0.067]["exact"] is None
+    sheets = {sheet.title: sheet for sheet in tables_of(beside(hinge, replace(EXACT, stiffness=1.02)))}
+    assert any("exact" in sheet.headers for sheet in sheets.values())
+    assert all(len(row) == len(sheet.headers) for sheet in sheets.values() for row in sheet.rows)
+    errors = sheets["True errors in bending, beside the exact answer"]
+    assert {row[4] for row in errors.rows} == {row[8] for row in errors.rows} == {"far beyond"}
 
 
 @pytest.mark.parametrize("exact", [None, nobody])
@@ -347,14 +352,6 @@ def test_statements_count_per_stage_closing_loads_once_and_no_error_not_at_all(h
     whole = tally(ratios, "cprbm")
     assert whole.holds
     assert whole.rows > 0
-
-
-def test_the_tables_show_the_exact_value_and_errors_far_beyond(hinge):
-    found = {sheet.title: sheet for sheet in tables_of(beside(hinge, replace(EXACT, stiffness=1.02)))}
-    assert any("exact" in sheet.headers for sheet in found.values())
-    assert all(len(row) == len(sheet.headers) for sheet in found.values() for row in sheet.rows)
-    errors = found["True errors in bending, beside the exact answer"]
-    assert {row[4] for row in errors.rows} == {row[8] for row in errors.rows} == {"far beyond"}
 
 
 def test_the_exact_solver_takes_part_in_a_real_run_and_answers_alone(capsys):

@@ -140,27 +140,8 @@ def loads(solver, *values):
     return Answer(solver, "hinge", frozendict(), Ending.COMPLETED, "", (), critical=critical)
 
 
-@pytest.mark.parametrize(
-    ("cprbm", "fea", "words"),
-    [
-        ((0.3,), (0.306,), [Word.AGREE]),
-        ((0.3,), (0.307,), [Word.DIFFER]),
-        ((0.3, 0.5), (0.3,), [Word.AGREE, Word.DIFFER]),
-        ((0.3, 0.5), (0.5,), [Word.DIFFER, Word.DIFFER]),
-    ],
-)
-def test_of_a_load_one_per_cent_of_the_span_is_allowed_and_the_first_is_compared_with_the_first(
-    hinge, cprbm, fea, words
-):
-    """The span is 0.67 N·m."""
-    first, second = loads("cprbm", *cprbm), loads("fea", *fea)
-    answers = {"cprbm": first, "cprbm finer": first, "fea": second, "fea finer": second}
-    rows = critical_rows(Runs(hinge, "bending", answers))
-    assert [row.word for row in rows] == words
-    assert [row.place for row in rows] == list(range(len(words)))
-
-
-def test_the_load_axis_of_stages(crank, hinge):
+def test_the_span_of_a_load_and_its_hundredth_that_two_critical_loads_may_differ_by(crank, hinge):
+    """The span is 0.67 N·m; the first critical load is compared with the first."""
     forward, back = crank.stages
     assert (begins_at(crank, forward), begins_at(crank, back)) == (0.0, forward.stations[-1])
     assert span_of(crank, back) == pytest.approx(radians(89.0))
@@ -168,6 +149,17 @@ def test_the_load_axis_of_stages(crank, hinge):
     assert event_tolerance(hinge, hinge.stages[0]) == pytest.approx(0.0067)
     both = Stage(name="more", steps="M", stations=(-0.33, 0.5))
     assert span_of(hinge.model_copy(update={"stages": (*hinge.stages, both)}), both) == pytest.approx(0.67 + 0.33)
+    for cprbm, fea, expected in (
+        ((0.3,), (0.306,), [Word.AGREE]),
+        ((0.3,), (0.307,), [Word.DIFFER]),
+        ((0.3, 0.5), (0.3,), [Word.AGREE, Word.DIFFER]),
+        ((0.3, 0.5), (0.5,), [Word.DIFFER, Word.DIFFER]),
+    ):
+        first, second = loads("cprbm", *cprbm), loads("fea", *fea)
+        answers = {"cprbm": first, "cprbm finer": first, "fea": second, "fea finer": second}
+        rows = critical_rows(Runs(hinge, "bending", answers))
+        assert [row.word for row in rows] == expected, (cprbm, fea)
+        assert [row.place for row in rows] == list(range(len(expected)))
 
 
 @pytest.mark.parametrize(

@@ -151,11 +151,11 @@ def test_runs_that_end_before_the_first_station_name_the_critical_point_and_a_re
     assert remedy in printed
 
 
-def test_an_agreement_up_to_a_critical_point_counts_the_unreached_stations_and_releases_nothing(coarse):
+def test_an_agreement_up_to_a_critical_point_counts_the_unreached_stations_and_releases_nothing(crank):
     """Both solvers stop at one critical point: the rows before the point agree."""
-    stopped = compared(coarse, *STOPS)
+    stopped = compared(crank, *STOPS)
     assert word_of(stopped) == "AGREE"
-    asked = sum(len(stage.stations) for stage in coarse.stages)
+    asked = sum(len(stage.stations) for stage in crank.stages)
     left = asked - len({row.where for row in stopped.rows})
     assert 0 < left < asked
     end = stopped.runs.answers["cprbm"].critical[-1]
