@@ -37,8 +37,8 @@ RIGHT += [("strip", "cprbm"), ("strip", "fine"), ("micro-gripper", "default")]
 def test_right_answers_stay_quiet(name, solver):
     """Also for a contact that closes between two stations of a drive, a hump between stations and a step at a moment.
 
-    In the micro-gripper four elements bear the shear between a contact and a load near by, and γ of the outer elements
-    follows the steps of Q; the CPRBM agrees to 1e-4.
+    In the micro-gripper four elements bear the shear between a contact and a load near by.  There γ of the outer
+    elements follows the steps of Q, and the CPRBM agrees to 1e-4.
     """
     answer = answered(name, solver)
     found = audit(asked(name), answer)

@@ -1,7 +1,7 @@
 """``cprbm optimise`` and ``cprbm tolerance`` beside closed forms, and the wrong questions of all sweeps.
 
-Under the tip force P the deflection of a cantilever in the linear range is 4 P L³ / (E b t³), and the stress at the
-clamp is 6 P L / (b t²).
+In the linear range the tip force P deflects a cantilever by 4 P L³ / (E b t³).  The stress at the clamp is
+6 P L / (b t²).
 """
 
 import json

@@ -223,7 +223,7 @@ def test_a_passed_critical_point_is_in_the_json_the_table_and_the_archive(forwar
 # -- Claims and convergence
 
 
-def test_claims_of_a_critical_value_and_of_a_probe_are_compared_with_the_cprbms(coarse):
+def test_claims_of_a_critical_value_and_of_a_probe_are_compared_with_the_cprbms(crank):
     """A claim of 35.5 ± 0.5 is not met, a claim of 70.5 ± 0.5 is; without a value the solvers are compared.
 
     The moment at 0° vanishes.
@@ -235,8 +235,8 @@ def test_claims_of_a_critical_value_and_of_a_probe_are_compared_with_the_cprbms(
         Claim(probe="crank.reaction_moment", stage="forward", station=0.0, value=value, bound=bound)
         for value, bound in ((0.0, 1e-6), (0.1, 0.5))
     )
-    comparison = compared(coarse.model_copy(update={"claims": (*claims, *moments)}), *JUMPS)
-    found = standings(coarse.model_copy(update={"claims": claims}), (), comparison.criticals)
+    comparison = compared(crank.model_copy(update={"claims": (*claims, *moments)}), *JUMPS)
+    found = standings(crank.model_copy(update={"claims": claims}), (), comparison.criticals)
     assert [each.holds for each in found] == [False, True, True]
     assert found[0].difference == pytest.approx((70.4 + 0.0057296 - 35.5) / 35.5, rel=1e-6)
     assert [each.stations for each in found] == [1, 1, 2]
