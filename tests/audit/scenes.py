@@ -10,11 +10,10 @@ import cprbm
 import fea_reference
 from comparisons import cases
 from comparisons.audit import audit
-from cprbm_scene import Answer, Ending, Shape, StationAnswer, read, scene_from
+from cprbm_scene import Answer, Certificate, Ending, Shape, StationAnswer, read, scene_from
 from cprbm_scene.answer import BeamState
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 from tests.scenes.rare_scenes import FOLDER
-from tests.verdict.made_up import CERTIFICATE
 
 SOLVERS = {
     "cprbm": lambda scene: cprbm.answer(scene, cprbm.Settings(links=20)),
@@ -153,6 +152,7 @@ def answered(name, solver):
 # -- Made-up answers of straight beams with drawn neutral lines
 
 T = 1e-3
+CERTIFICATE = Certificate(1e-13, 1e-13, 1e-15, 1e-5, 1e-12, 1e-12, 1e-12, 0.3, 5)
 
 
 def line(start, end, count=41):
