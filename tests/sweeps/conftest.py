@@ -3,6 +3,7 @@
 import pytest
 
 from comparisons.sweeps import outcome
+from tests.sweeps.planted import called_here
 
 
 @pytest.fixture
@@ -14,7 +15,7 @@ def children():
 def _in_this_process(request, monkeypatch, unprinted):
     """A child loads modules and kernels for a second; a point of these sweeps takes a hundredth."""
     if "children" not in request.fixturenames:
-        monkeypatch.setattr(outcome, "call_limited", lambda seconds, call, *arguments: call(*arguments))
+        monkeypatch.setattr(outcome, "call_limited", called_here)
 
 
 @pytest.fixture

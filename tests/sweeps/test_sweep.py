@@ -1,13 +1,16 @@
-"""``cprbm sweep`` and ``comparisons.sweep``: tables, interruptions, failing points, wrong questions, the elastica."""
+"""``cprbm sweep`` and ``comparisons.sweep``: tables and samples, children and clusters, interruptions and failures."""
 
+import json
 import math
 import os
 import random
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -18,28 +21,60 @@ import pytest
 import comparisons
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.pairing import Solvers
+from comparisons.sweeps import outcome as outcomes
 from comparisons.sweeps import tables, workers
 from comparisons.sweeps.demands import Measure
 from comparisons.sweeps.outcome import Outcome
 from comparisons.sweeps.points import Axis
 from comparisons.sweeps.running import known_outcomes
 from cprbm_scene import read
-from tests.sweeps.elastica import tip
+from tests.sweeps.planted import Poisoned, called_here
 from tests.sweeps.scenes import CANTILEVER, table
 
 ROOT = Path(__file__).parents[2]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "NUMBA_DISABLE_JIT": "1"}
+ENVIRONMENT["DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES"] = "1"
+IN_CHILDREN = pytest.mark.usefixtures("children", "interpreted")
+GRID = ("--vary", "t=1.6mm..2.4mm:3", "--vary", "L=90..110:2")
 
 
-@pytest.fixture
-def scene(tmp_path):
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
     """File of a cantilever with parameters."""
-    path = tmp_path / "cantilever.toml"
+    path = tmp_path_factory.mktemp("scene") / "cantilever.toml"
     path.write_text(CANTILEVER.format(stations="[0.5, '= P']"), "utf-8")
     return path
 
 
-def swept(scene, out, *options):
-    return run(["sweep", str(scene), "-n", "6", "--quiet", "--out", str(out), *options])
+def swept(scene, out, *options, solvers=None):
+    return run(["sweep", str(scene), "-n", "6", "--quiet", "--out", str(out), *options], solvers)
+
+
+def swept_here(scene, out, *options):
+    """A sweep in this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(outcomes, "call_limited", called_here)
+        return swept(scene, out, *options)
+
+
+@pytest.fixture(scope="module")
+def serial(scene, tmp_path_factory):
+    """Table of 6 points from this process, whose figures are printed."""
+    folder = tmp_path_factory.mktemp("serial")
+    assert swept_here(scene, folder, *GRID) == 0
+    rows = table(folder)
+    assert len(rows) == 6 * 2 * 2
+    return rows
+
+
+def lines_of(folder):
+    """Number of whole lines of a journal."""
+    journal = folder / "outcomes.jsonl"
+    return journal.read_bytes().count(b"\n") if journal.exists() else 0
+
+
+# -- Tables
 
 
 def test_numbers_of_a_measure_and_texts_with_units():
@@ -63,7 +98,7 @@ def test_numbers_of_a_measure_and_texts_with_units():
 
 
 def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(scene, tmp_path, capsys):
-    assert swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:3", "--vary", "L=90..110:2") == 0
+    assert swept(scene, tmp_path / "s", *GRID) == 0
     rows, last = table(tmp_path / "s"), table(tmp_path / "s", "last.csv")
     assert [(row["t, mm"], row["L, mm"], row["station"], row["component"]) for row in rows[:4]] == [
         ("1.6", "90.0", "0.5", "x"),
@@ -78,35 +113,35 @@ def test_a_grid_has_a_row_per_number_and_a_larger_grid_takes_the_points_over(sce
     assert "cantilever: 6 points, unchecked." in capsys.readouterr().out
     page = (tmp_path / "s" / "index.html").read_text("utf-8")
     assert "t = 1.6 mm to t = 2.4 mm (3 values)" in page
-    lines = len((tmp_path / "s" / "outcomes.jsonl").read_text("utf-8").splitlines())
+    assert lines_of(tmp_path / "s") == 6
     assert swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:5", "--vary", "L=90..110:2") == 0
-    assert lines == 6
-    assert len((tmp_path / "s" / "outcomes.jsonl").read_text("utf-8").splitlines()) == 10
+    assert lines_of(tmp_path / "s") == 10
     known = {row["key"]: row for row in last}
     assert sum(row["key"] in known for row in table(tmp_path / "s", "last.csv")) == 6
 
 
-def test_a_number_that_is_constant_but_for_round_off_has_a_map(scene, tmp_path):
-    """The force at the clamp is the load, whatever the thickness and the length."""
+def test_figures_leave_out_numbers_that_do_not_depend_on_the_parameters(scene, tmp_path):
+    """The drop at the first station alone depends on the point; the shift is the same but for round-off."""
+    record = {"stage": "load", "probe": "B.displacement", "branch": 0, "arc_length": None}
+
+    def outcome(drop, round_off):
+        values = {"x": (-1e-3, -2e-3 + round_off), "y": (drop, -5e-3)}
+        return Outcome("cprbm", "COMPLETED", "", numbers=tuple(
+            {**record, "component": name, "station": station, "value": value}
+            for name, pair in values.items() for station, value in zip((0.5, 1.0), pair, strict=True)
+        ))  # fmt: skip
+
+    def shown(*outcomes):
+        return [each.name for each in tables.dependent(read(scene), [(None, each) for each in outcomes])]
+
+    assert shown(outcome(-3e-3, 0.0), outcome(-4e-3, 1e-16)) == ["B.displacement.y"]
+    assert shown(outcome(-3e-3, 0.0)) == ["B.displacement.x", "B.displacement.y"]
+    # the force at the clamp is the load, whatever the thickness and the length: round-off alone still has a map
     text = scene.read_text("utf-8").replace('of = "B"\nquantity = "displacement"', 'of = "A"\nquantity = "reaction"')
-    scene.write_text(text, "utf-8")
-    assert swept(scene, tmp_path / "s", "--vary", "t=1.9mm..2.1mm:2", "--vary", "L=90..110:2") == 0
+    (tmp_path / "reaction.toml").write_text(text, "utf-8")
+    assert swept(tmp_path / "reaction.toml", tmp_path / "s", "--vary", "t=1.9mm..2.1mm:2", "--vary", "L=90..110:2") == 0
     assert len({row["value"] for row in table(tmp_path / "s") if row["component"] == "y"}) > 1
     assert (tmp_path / "s" / "parameters.svg").exists()
-
-
-@pytest.mark.usefixtures("children", "interpreted")
-def test_executors_give_the_same_table_bit_for_bit(scene, tmp_path, monkeypatch):
-    """Serial, threads, and processes of the caller; 6 points, more than an executor has at a time."""
-    monkeypatch.setattr(workers, "WINDOW", 4)
-    vary = {"t": list(np.linspace(1.6e-3, 2.4e-3, 3)), "L": list(np.linspace(0.09, 0.11, 2))}
-    choices = Choices(links=4)
-    with ThreadPoolExecutor(1) as serial, ProcessPoolExecutor(1, mp_context=get_context("spawn")) as processes:
-        for name, executor in (("serial", serial), ("local", None), ("processes", processes)):
-            comparisons.sweep(read(scene), vary, choices=choices, executor=executor, out=tmp_path / name)
-    serial = table(tmp_path / "serial")
-    assert len(serial) == 6 * 2 * 2
-    assert table(tmp_path / "local") == table(tmp_path / "processes") == serial
 
 
 def test_shards_merge_to_the_whole(scene, tmp_path):
@@ -128,10 +163,9 @@ def test_checked_points_have_a_verdict(scene, tmp_path, capsys):
     assert all(row["verdict"] for row in rows if row["solver"] == "compare")
     assert " of 2 checked points, 3 unchecked" in capsys.readouterr().out
     assert any(row["stated"] for row in table(tmp_path / "s"))
-    journal = tmp_path / "s" / "outcomes.jsonl"
-    lines = len(journal.read_bytes().splitlines())
+    lines = lines_of(tmp_path / "s")
     swept(scene, tmp_path / "s", "--vary", "t=1.6mm..2.4mm:5", "--elements", "8")
-    assert len(journal.read_bytes().splitlines()) == lines, "the comparison has the answer of the plain point too"
+    assert lines_of(tmp_path / "s") == lines, "the comparison has the answer of the plain point too"
     assert [row["solver"] for row in table(tmp_path / "s", "last.csv")].count("compare") == 2
 
 
@@ -148,179 +182,156 @@ def test_netcdf_has_the_numbers_of_the_table(scene, tmp_path):
         assert values.values.ravel() == pytest.approx(1e-3 * np.array(rows), rel=1e-12)
 
 
-@pytest.mark.parametrize("sample", ["sobol:4", "lhs:4", "points.csv"])
-def test_samples(scene, tmp_path, sample):
-    (tmp_path / "points.csv").write_text("t,L\n1.7mm,95\n0.0019m,100mm\n", "utf-8")
-    source = str(tmp_path / sample) if sample.endswith("csv") else sample
-    assert swept(scene, tmp_path / "s", "--sample", source) == 0
-    values = [float(row["t, mm"]) for row in table(tmp_path / "s", "last.csv")]
-    assert values == [1.7, 1.9] if sample.endswith("csv") else len(set(values)) == 4
-    assert all(1.0 <= value <= 3.0 for value in values)
+def test_samples_are_drawn_or_stand_in_a_table_with_comments_and_semicolons(scene, tmp_path):
+    def values(sample, name="t, mm"):
+        assert swept(scene, tmp_path / "s", "--sample", str(sample)) == 0
+        return [float(row[name]) for row in table(tmp_path / "s", "last.csv")]
 
-
-def test_a_table_of_points_may_have_a_single_point_comments_and_semicolons(scene, tmp_path):
-    (tmp_path / "points.csv").write_text("t\n1.7mm\n", "utf-8")
-    assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 0
+    for sample in ("sobol:4", "lhs:4"):
+        drawn = values(sample)
+        assert len(set(drawn)) == 4, sample
+        assert all(1.0 <= value <= 3.0 for value in drawn), sample
+    path = tmp_path / "points.csv"
+    path.write_text("t,L\n1.7mm,95\n0.0019m,100mm\n", "utf-8")
+    assert values(path) == [1.7, 1.9]
+    path.write_text("t\n1.7mm\n", "utf-8")  # a single point
+    assert values(path) == [1.7]
     assert (tmp_path / "s" / "index.html").exists()
-    (tmp_path / "points.csv").write_bytes(b"# measured\r\n\r\nt;L\r\n1.7mm; 95\r\n\r\n1.9mm;100mm\r\n")
-    assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 0
-    assert [row["L, mm"] for row in table(tmp_path / "s", "last.csv")] == ["95.0", "100.0"]
+    path.write_bytes(b"# measured\r\n\r\nt;L\r\n1.7mm; 95\r\n\r\n1.9mm;100mm\r\n")
+    assert values(path, "L, mm") == [95.0, 100.0]
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("t,L\n1.7mm,95\n# thin\n1.9mm\n", "row 4: found 1 values of t, L; allowed: a value for every name"),
-        ("t,t\n1.7,1.8\n", "row 2: found 2 values of t, t; allowed: a value for every name, each name once"),
-        ("t\n1,7\n", "row 2: found 2 values of t;"),
-        ("t\n1.7\nthin\n", "row 3: found 'thin'; allowed: a finite number, as 1.9mm"),
-        ("thick\n1.7\n", "row 2: found 'thick', which names no parameter; allowed: the name of a parameter: 't', 'L'"),
-        ("t\n", "found 0 rows below the names t"),
-        ("", "found 0 rows below the names (none)"),
-    ],
-)
-def test_a_wrong_table_is_named_with_its_row(scene, tmp_path, capsys, text, said):
-    (tmp_path / "points.csv").write_text(text, "utf-8")
-    assert swept(scene, tmp_path / "s", "--sample", str(tmp_path / "points.csv")) == 2
-    assert f"points.csv: {said}" in capsys.readouterr().err
+# -- Children
 
 
-def test_figures_leave_out_numbers_that_do_not_depend_on_the_parameters(scene):
-    """The drop at the first station alone depends on the point; the shift is the same but for round-off."""
-    record = {"stage": "load", "probe": "B.displacement", "branch": 0, "arc_length": None}
+@IN_CHILDREN
+def test_executors_give_the_same_table_bit_for_bit(scene, tmp_path, monkeypatch):
+    """A thread, children, and processes of the caller; 6 points, more than an executor has at a time."""
+    monkeypatch.setattr(workers, "WINDOW", 4)
+    vary = {"t": list(np.linspace(1.6e-3, 2.4e-3, 3)), "L": list(np.linspace(0.09, 0.11, 2))}
 
-    def outcome(drop, round_off):
-        values = {"x": (-1e-3, -2e-3 + round_off), "y": (drop, -5e-3)}
-        return Outcome("cprbm", "COMPLETED", "", numbers=tuple(
-            {**record, "component": name, "station": station, "value": value}
-            for name, pair in values.items() for station, value in zip((0.5, 1.0), pair, strict=True)
-        ))  # fmt: skip
+    def rows(name, executor):
+        comparisons.sweep(read(scene), vary, choices=Choices(links=4), executor=executor, out=tmp_path / name)
+        return table(tmp_path / name)
 
-    def shown(*outcomes):
-        return [each.name for each in tables.dependent(read(scene), [(None, each) for each in outcomes])]
-
-    assert shown(outcome(-3e-3, 0.0), outcome(-4e-3, 1e-16)) == ["B.displacement.y"]
-    assert shown(outcome(-3e-3, 0.0)) == ["B.displacement.x", "B.displacement.y"]
-
-
-POISONED = """
-import os, sys, time
-from comparisons.cli.main import run
-from comparisons.pairing import Solvers, cprbm_answer
+    with ThreadPoolExecutor(1) as thread, monkeypatch.context() as patch:
+        patch.setattr(outcomes, "call_limited", called_here)
+        serial = rows("serial", thread)
+    assert len(serial) == 6 * 2 * 2
+    assert rows("local", None) == serial
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as processes:
+        assert rows("processes", processes) == serial
 
 
-class Poisoned:
-    def __call__(self, scene, choices):
-        with open({marks!r}, "a") as stream:
-            stream.write("x")
-        thickness = round(scene.beams["b"].thickness * 1e3, 6)
-        if thickness == 1.8:
-            os._exit(7)
-        if thickness == 2.0:
-            time.sleep(600.0)
-        if thickness == 2.2:
-            raise ZeroDivisionError("a beam of no length")
-        return cprbm_answer(scene, choices)
-
-
-if __name__ == "__main__":
-    sys.exit(run(["sweep", *sys.argv[1:]], Solvers(cprbm=Poisoned())))
-"""
-
-
-def program(tmp_path, text):
-    (tmp_path / "program.py").write_text(text, "utf-8")
-    return [sys.executable, str(tmp_path / "program.py")]
-
-
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "NUMBA_DISABLE_JIT": "1"}
-
-
-@pytest.mark.usefixtures("children", "interpreted")
-def test_poisoned_points_are_rows_and_are_tried_twice(scene, tmp_path):
-    marks = tmp_path / "marks"
-    command = [*program(tmp_path, POISONED.format(marks=str(marks))), str(scene), "-n", "6", "--quiet", "--out"]
-    options = [str(tmp_path / "s"), "--vary", "t=1.6mm..2.4mm:5", "--at-most", "10"]
-    done = subprocess.run([*command, *options], env=ENVIRONMENT, capture_output=True, text=True, check=False)
-    assert done.returncode == 1, done.stderr
+@IN_CHILDREN
+def test_poisoned_points_are_rows_and_are_tried_twice(scene, tmp_path, capsys):
+    marks, options = tmp_path / "marks", ["--vary", "t=1.6mm..2.4mm:5", "--at-most", "5"]
+    planted = Poisoned(str(marks), {1.8: "child", 2.0: "sleep", 2.2: "fault"})
+    assert swept(scene, tmp_path / "s", *options, solvers=Solvers(cprbm=planted)) == 1
     rows = table(tmp_path / "s", "last.csv")
     assert [row["ending"] for row in rows] == ["COMPLETED", "CRASHED", "TIME_LIMIT", "FAULT", "COMPLETED"]
-    assert "7" in rows[1]["sentence"]
-    assert "10 s" in rows[2]["sentence"]
-    assert "a beam of no length" in rows[3]["sentence"]
-    assert len(marks.read_text()) == 5 + 2
-    assert "3 of 5 points failed (1 CRASHED, 1 FAULT, 1 TIME_LIMIT)" in done.stdout
-    assert "the same command tries again" in rows[1]["sentence"]
-    assert "a longer --at-most tries again" in rows[2]["sentence"]
-    assert swept(scene, tmp_path / "s", *options[1:]) == 1, "the crash has passed, the other failures stand"
+    parts = ("7", "the same command tries again"), ("5 s", "a longer --at-most tries again"), ("a beam of no length",)
+    for row, said in zip(rows[1:4], parts, strict=True):
+        assert [part for part in said if part not in row["sentence"]] == []
+    assert len(marks.read_text().split()) == 5 + 2
+    assert "3 of 5 points failed (1 CRASHED, 1 FAULT, 1 TIME_LIMIT)" in capsys.readouterr().out
+    assert swept_here(scene, tmp_path / "s", *options) == 1, "the crash has passed, the other failures stand"
     rows = table(tmp_path / "s", "last.csv")
     assert [row["ending"] for row in rows] == ["COMPLETED", "COMPLETED", "TIME_LIMIT", "FAULT", "COMPLETED"]
 
 
-@pytest.mark.usefixtures("children", "interpreted")
-def test_kills_of_the_parent_end_in_the_same_table(scene, tmp_path):
+@IN_CHILDREN
+def test_kills_of_the_parent_end_in_the_same_table(scene, tmp_path, serial):
     """Kills at random times; every later run goes on from the lines that stand."""
-    vary = ["--vary", "t=1.6mm..2.4mm:4", "--vary", "L=90..110:2"]
-    assert swept(scene, tmp_path / "whole", *vary) == 0
-    options = [str(scene), "-n", "6", "--quiet", "--out", str(tmp_path / "killed"), *vary]
-    command = [sys.executable, "-m", "comparisons", "sweep", *options]
-    journal, drawn, lines = tmp_path / "killed" / "outcomes.jsonl", random.Random(905), 0
+    command = [sys.executable, "-m", "comparisons", "sweep", str(scene), "-n", "6", "--quiet", *GRID]
+    drawn, lines = random.Random(905), 0
     for _ in range(2):
-        process = subprocess.Popen(command, env=ENVIRONMENT, cwd=ROOT, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            [*command, "--out", str(tmp_path)], env=ENVIRONMENT, cwd=ROOT, stdout=subprocess.DEVNULL
+        )
         wanted = lines + drawn.randrange(3)
-        while (len(journal.read_bytes().splitlines()) if journal.exists() else 0) <= wanted:
-            if process.poll() is not None:
-                break
+        while lines_of(tmp_path) <= wanted and process.poll() is None:
             time.sleep(0.002)
         process.send_signal(signal.SIGKILL)
         process.wait()
-        now = journal.read_bytes().count(b"\n")
-        assert now >= lines
-        lines = now
-    with journal.open("ab") as stream:
+        assert lines_of(tmp_path) >= lines
+        lines = lines_of(tmp_path)
+    with (tmp_path / "outcomes.jsonl").open("ab") as stream:
         stream.write(b'{"key": "cut short by a kill", "solv')
-    assert swept(scene, tmp_path / "killed", *vary) == 0
-    assert table(tmp_path / "killed") == table(tmp_path / "whole")
-    assert len(journal.read_bytes().splitlines()) == len(known_outcomes([tmp_path / "killed"])) == 8
+    assert swept_here(scene, tmp_path, *GRID) == 0
+    assert table(tmp_path) == serial
+    assert lines_of(tmp_path) == len(known_outcomes([tmp_path])) == 6
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--vary", "thickness=1mm..2mm:3"], "names no parameter"),
-        (["--vary", "t=1N..2N:3"], "a finite number, as 1.9mm"),
-        (["--vary", "t=1mm..5mm:3"], "a number from 1 to 3 mm"),
-        (["--vary", "t=1mm..2mm:1"], "two values or more"),
-        (["--vary", "t=1mm..2mm"], "without a number of values"),
-        (["--vary", "t=1mm..2mm:3", "--vary", "t=1mm..2mm:4"], "a parameter once"),
-        (["--vary", "L=-100..100:3"], "1 of 3 points without a valid scene"),
-        (["--sample", "halton:9"], "sobol:K or lhs:K"),
-        (["--sample", "absent.csv"], "No such file"),
-        (["--vary", "t=1mm..2mm:3", "--shard", "4/3"], "I/N with I from 1 to N"),
-        (["--vary", "t=1mm..2mm:3", "--on", "remote"], "local:N"),
-        ([], "neither --vary nor --sample"),
-    ],
-)
-def test_a_wrong_question_is_a_sentence(scene, tmp_path, capsys, options, said):
-    assert swept(scene, tmp_path / "s", *options) == 2
-    error = capsys.readouterr().err
-    assert said in error
-    assert error.count("\n") == 1
-    assert not (tmp_path / "s").exists()
+# -- A Dask cluster: a scheduler and two worker processes on this machine
 
 
-def test_a_cantilever_follows_the_elastica_with_order_four(tmp_path):
-    """α = P L² / (E I) from 0.2 to 10, with the closed form of Bisshopp and Drucker; E I / L² is 4/3 N.
+@contextmanager
+def dask(folder, *arguments):
+    """A process of Dask in a session of its own; ends with the context."""
+    command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard"]
+    with (folder / f"{arguments[0]}.log").open("ab") as log:
+        process = subprocess.Popen(command, cwd=folder, env=ENVIRONMENT, stdout=log, stderr=log, start_new_session=True)
+    try:
+        yield process
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
 
-    The chain has order four on a beam without contact (docs/method.md).
-    """
-    path = tmp_path / "cantilever.toml"
-    path.write_text(CANTILEVER.format(stations="['= P']"), "utf-8")
-    alphas, errors = (0.2, 1.0, 4.0, 10.0), {}
-    for links in (20, 40, 80, 160):
-        swept = comparisons.sweep(read(path), {"P": [4.0 / 3.0 * alpha for alpha in alphas]}, choices=Choices(links))
-        values = [[number["value"] / 0.1 for number in outcome.numbers] for _, outcome in swept.points()]
-        errors[links] = [np.hypot(*np.subtract(value, tip(alpha))) for value, alpha in zip(values, alphas, strict=True)]
-    assert max(errors[40]) < 5e-4
-    orders = [np.log2(np.divide(errors[n], errors[2 * n])) for n in (20, 40, 80)]
-    np.testing.assert_allclose(orders, 4.0, atol=0.1)
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """Address of a scheduler, and the processes of its two workers."""
+    pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
+    folder = tmp_path_factory.mktemp("cluster")
+    file = folder / "scheduler.json"
+    worker = ("worker", "--scheduler-file", str(file), "--nthreads", "1", "--death-timeout", "60")
+    with dask(folder, "scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file)):
+        while not file.exists():
+            time.sleep(0.05)
+        with dask(folder, *worker) as first, dask(folder, *worker) as second:
+            yield json.loads(file.read_text())["address"].replace("tcp://", "dask://"), (first, second)
+
+
+@IN_CHILDREN
+@pytest.mark.parametrize("fate", ["child", "worker"])
+def test_a_poisoned_point_is_a_row_and_costs_at_most_four_further_executions(scene, tmp_path, cluster, fate):
+    """6 points; at a point the child dies, or its worker with the child."""
+    marks = tmp_path / "marks"
+    text = scene.read_text("utf-8").replace('thickness = "= t"', 'thickness = "= t + (L - 90)*1e-4"')
+    (tmp_path / "scene.toml").write_text(text, "utf-8")
+    planted = Solvers(cprbm=Poisoned(str(marks), {2.0: fate}))
+    assert swept(tmp_path / "scene.toml", tmp_path / "s", "--on", cluster[0], *GRID, solvers=planted) == 1
+    rows = table(tmp_path / "s", "last.csv")
+    assert [row["point"] for row in rows] == [str(number + 1) for number in range(6)]
+    assert [row["ending"] for row in rows if row["ending"] != "COMPLETED"] == ["CRASHED"]
+    executions = marks.read_text().split()
+    assert 2 <= executions.count("2.0") <= 5
+    if fate == "child":  # a worker that dies takes finished results with it
+        assert len(executions) == 6 + 1
+
+
+@IN_CHILDREN
+def test_a_cluster_gives_the_table_of_one_process_though_a_worker_is_killed(scene, tmp_path, cluster, serial):
+    """The nanny and the worker die in the middle of the sweep; the other worker takes the points."""
+
+    def kill():
+        while lines_of(tmp_path) < 2:
+            time.sleep(0.01)
+        os.killpg(cluster[1][1].pid, signal.SIGKILL)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    assert swept(scene, tmp_path, "--on", cluster[0], *GRID) == 0
+    killer.join()
+    assert table(tmp_path) == serial
+
+
+def test_a_cluster_of_another_version_or_without_a_scheduler_is_refused(scene, tmp_path, cluster, capsys, monkeypatch):
+    monkeypatch.setattr(workers, "program", lambda: "another")
+    monkeypatch.setattr(workers, "CONNECT", 1.0)
+    for place, said in ((cluster[0], "another version of cprbm"), ("dask://127.0.0.1:9", "dask://127.0.0.1:9")):
+        assert swept(scene, tmp_path / "s", "--on", place, *GRID) == 2, place
+        error = capsys.readouterr().err
+        assert said in error
+        assert error.count("\n") == 1

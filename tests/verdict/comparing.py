@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -12,10 +12,15 @@ from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.executor import Solver
 from comparisons.pairing import Solvers, paired
+from comparisons.verdict import Reason, Word
 from comparisons.verdict.rows import Row
 from cprbm_scene import Answer, Ending, Scene, StationAnswer
 from cprbm_scene.answer import ContactState, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
+from tests.verdict.made_up import MadeUp
+
+C, F = MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)
+"""Right solvers: their errors at the default sizes are 0.2 % and an eighth of 0.1 %."""
 
 Change = Callable[[StationAnswer], StationAnswer]
 
@@ -32,22 +37,25 @@ def row_of(comparison: Comparison, probe: str, station: float = 0.67) -> Row:
     return next(row for row in comparison.rows if (row.probe.name, row.station) == (probe, station))
 
 
+def words(judged: Iterable[Word | Reason | None]) -> str:
+    """Word and reason as text, such as ``UNDECIDED COARSE``; empty for a row that takes no part."""
+    return " ".join(each.value for each in judged if each is not None)
+
+
 def said_of(comparison: Comparison, probe: str, station: float = 0.67) -> str:
-    """Word and reason of a row, as ``UNDECIDED COARSE``; empty where the row takes no part."""
+    """Word and reason of the row of a probe at a station."""
     row = row_of(comparison, probe, station)
-    return " ".join(each.value for each in (row.word, row.reason) if each is not None)
+    return words((row.word, row.reason))
 
 
 def counted(comparison: Comparison) -> Counter[str]:
     """Numbers of the words and reasons of all rows that take part."""
-    rows = ((row.word, row.reason) for row in comparison.rows)
-    return Counter(" ".join(each.value for each in row if each is not None) for row in rows if row[0] is not None)
+    return Counter(words((row.word, row.reason)) for row in comparison.rows if row.word is not None)
 
 
 def word_of(comparison: Comparison) -> str:
     """Word and reason of the case."""
-    both = comparison.verdict.word, comparison.verdict.reason
-    return " ".join(each.value for each in both if each is not None)
+    return words((comparison.verdict.word, comparison.verdict.reason))
 
 
 def altered(solver: Solver, change: Change, *stations: float) -> Solver:

@@ -1,4 +1,4 @@
-"""Words and reasons of rows and cases on made-up answers."""
+"""Words and reasons of rows and cases on made-up answers, complete and incomplete ones."""
 
 import math
 from dataclasses import replace
@@ -17,21 +17,16 @@ from comparisons.verdict import Reason, Word, worst_of
 from comparisons.verdict.judge import judge_case, judge_rows
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs import Bounds
-from cprbm_scene import Probe, Stage
+from cprbm_scene import Ending, Probe, Stage
 from cprbm_scene.answer import PointForces, frozen_array
-from tests.verdict.comparing import altered, compared, counted, only, opened, row_of, said_of, word_of
+from cprbm_scene.frozendict import frozendict
+from tests.verdict.comparing import C, F, altered, compared, counted, ending, only, opened, row_of, said_of, word_of
 from tests.verdict.made_up import MadeUp, with_value
 
-C, F = MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)
 HINGE = cases.opened("hinge")
 RUNS = paired(HINGE, Choices(), Solvers(C, F))
 LIMIT = 0.015  # of the hinge
-
-
-def planted(fault, solver):
-    pair = {"cprbm": C, "fea": F}
-    pair[solver] = replace(pair[solver], **fault)
-    return pair["cprbm"], pair["fea"]
+ROTATION = "BD.rotation"
 
 
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
@@ -48,7 +43,9 @@ def planted(fault, solver):
     ids=["right", "2 % too stiff", "2 % too soft", "sign of the contact", "contact ignored", "stops"],
 )
 def test_a_planted_fault_in_a_solver(hinge, solver, fault, word):
-    found = compared(hinge, *planted(fault, solver))
+    pair = {"cprbm": C, "fea": F}
+    pair[solver] = replace(pair[solver], **fault)
+    found = compared(hinge, pair["cprbm"], pair["fea"])
     assert word_of(found) == word, found.verdict.sentence
     assert found.verdict.completed is ("until" not in fault)
 
@@ -108,36 +105,30 @@ def test_an_audit_that_fails_is_undecided_and_hides_no_difference(hinge):
 # -- Rows between events of the runs
 
 
-def test_a_station_between_the_loads_of_one_closing_is_undecided_and_counted(hinge):
+def test_rows_between_the_closings_of_runs_are_undecided_and_counted(hinge):
     """The CPRBM is open at 0.268, and both solvers close later: one row of ten by the force, none of the rest."""
     found = compared(hinge, altered(C, opened, 0.201, 0.268), F)
     assert said_of(found, "contact.force", 0.268) == "UNDECIDED EVENT"
     assert said_of(found, "contact.centre", 0.268) == ""  # the force decides
-    assert said_of(found, "BD.rotation", 0.268) == "AGREE"
+    assert said_of(found, ROTATION, 0.268) == "AGREE"
     assert word_of(found) == "AGREE"
     assert "of contact.force (EVENT)" in found.verdict.because
-
-
-def test_runs_of_one_solver_that_do_not_agree_on_a_contact_are_undecided(hinge):
-    """The run at 2N never closes: most rows of the force are between events, and the case is undecided."""
+    # the run at 2N never closes: most rows of the force are between events, and the case is undecided
     unsure = only(C, altered(C, opened), lambda choices: choices.links == 80)
     found = compared(hinge, unsure, F)
-    assert said_of(found, "contact.force") == "UNDECIDED EVENT"
-    assert word_of(found) == "UNDECIDED EVENT"
+    assert (said_of(found, "contact.force"), word_of(found)) == ("UNDECIDED EVENT", "UNDECIDED EVENT")
 
 
-@pytest.mark.parametrize("quantity", ["centre", "ends", "closing_load"])
-def test_without_a_force_a_place_in_one_solver_alone_is_undecided(hinge, quantity):
-    asked = hinge.model_copy(update={"probes": (Probe(of="contact", quantity=quantity),), "claims": ()})
-    assert word_of(compared(asked, replace(C, contact=False), F)) == "UNDECIDED EVENT"
-    assert word_of(compared(asked, replace(C, contact=False), replace(F, contact=False))).startswith("UNDECIDED")
-
-
-def test_a_force_without_a_place_differs(hinge):
-    found = compared(hinge, replace(C, contact=False), F)
-    assert said_of(found, "contact.force") == "DIFFER EVENTS"
-    assert row_of(found, "contact.force").fraction(row_of(found, "contact.force").difference) == pytest.approx(1.0)
+def test_a_contact_in_one_solver_alone_differs_by_the_force_and_is_undecided_without_a_force(hinge):
+    open_, force = replace(C, contact=False), "contact.force"
+    found = compared(hinge, open_, F)
+    assert said_of(found, force) == "DIFFER EVENTS"
+    assert row_of(found, force).fraction(row_of(found, force).difference) == pytest.approx(1.0)
     assert (row_of(found, "contact.centre").bounds, said_of(found, "contact.centre")) == (None, "")
+    for quantity in ("centre", "ends", "closing_load"):
+        asked = hinge.model_copy(update={"probes": (Probe(of="contact", quantity=quantity),), "claims": ()})
+        assert word_of(compared(asked, open_, F)) == "UNDECIDED EVENT", quantity
+        assert word_of(compared(asked, open_, replace(F, contact=False))).startswith("UNDECIDED"), quantity
 
 
 # -- Forces that a clamp and a contact share
@@ -172,16 +163,13 @@ def test_a_shared_force_is_not_unique_if_the_sums_are_equal(hinge, clamp, word, 
     assert ("2 of contact.force (NOT_UNIQUE)" in found.verdict.because) is (case == "AGREE")
 
 
-def test_a_shared_force_that_depends_on_the_mesh_widens_no_other_station(hinge):
+def test_shared_forces_widen_no_other_station_and_do_not_agree_alone(hinge):
     """The share moves from 9 N to 12 N between N and 2N; the other stations keep their small uncertainty."""
     coarse, fine = (altered(C, sharing(force, -20.0 - force), 0.603) for force in (9.0, 12.0))
     cprbm = only(coarse, fine, lambda choices: choices.links == 80)
     found = compared(hinge, cprbm, altered(F, sharing(12.0, -32.0), 0.603))
     assert said_of(found, "contact.force", 0.603) == "UNDECIDED NOT_UNIQUE"
     assert said_of(found, "contact.force", 0.67) == "AGREE"
-
-
-def test_rows_that_are_all_not_unique_do_not_agree(hinge):
     stage = Stage(name="load", steps="M", stations=(0.603, 0.67))
     probes = (Probe(of="contact", quantity="force"),)
     scene = hinge.model_copy(update={"stages": (stage,), "probes": probes, "claims": ()})
@@ -264,16 +252,13 @@ def test_words_of_rows_of_one_probe_make_the_word_of_the_case(rows, case):
     assert judge_case(RUNS.scene, [judged(*WORDS[each]) for each in rows]) == WORDS[case]
 
 
-@pytest.mark.parametrize(("difference", "word"), [(0.99 * LIMIT, "A"), (1.01 * LIMIT, "C")])
-def test_a_coarse_row_whose_solvers_differ_by_more_than_the_limit_decides(difference, word):
-    coarse = replace(judged(*WORDS["C"]), difference=difference)
-    assert judge_case(RUNS.scene, [coarse, *[judged(*WORDS["A"])] * 6]) == WORDS[word]
-
-
-def test_a_minority_of_all_rows_decides_where_it_is_the_majority_of_a_probe():
+def test_a_coarse_row_beyond_the_limit_and_a_minority_that_is_the_majority_of_a_probe_decide():
+    for difference, word in ((0.99 * LIMIT, "A"), (1.01 * LIMIT, "C")):
+        coarse = replace(judged(*WORDS["C"]), difference=difference)
+        assert judge_case(HINGE, [coarse, *[judged(*WORDS["A"])] * 6]) == WORDS[word]
     rows = [("a", "A")] * 10 + [("b", "C"), ("b", "C"), ("b", "A")]
     found = [replace(judged(*WORDS[word]), probe=Probe(of=of, quantity="rotation")) for of, word in rows]
-    assert judge_case(RUNS.scene, found) == WORDS["C"]
+    assert judge_case(HINGE, found) == WORDS["C"]
 
 
 def test_rows_without_a_value_or_a_statement_and_the_worst_of_words():
@@ -282,3 +267,95 @@ def test_rows_without_a_value_or_a_statement_and_the_worst_of_words():
     assert worst_of([None]) is None
     found = judge_rows(RUNS, [row(math.nan, math.nan, None), row(0.0, 0.0, None)])
     assert [(each.word, each.reason) for each in found] == [(None, None), (Word.UNDECIDED, Reason.RUN_ENDED)]
+
+
+# -- Answers that are not complete
+
+
+def certified(**fields):
+    return lambda station: replace(station, certificate=replace(station.certificate, **fields))
+
+
+def without(probe):
+    def change(station):
+        return replace(station, values=frozendict({k: v for k, v in station.values.items() if k != probe}))
+
+    return change
+
+
+def drawn(**fields):
+    """The first beam's shape with non-finite numbers, or no shape."""
+
+    def change(station):
+        shape = station.shapes["beam1"]
+        spoilt = {name: frozen_array(np.full(shape.x.shape, value)) for name, value in fields.items()}
+        shapes = {"beam2": station.shapes["beam2"]} | ({"beam1": replace(shape, **spoilt)} if fields else {})
+        return replace(station, shapes=frozendict(shapes))
+
+    return change
+
+
+def touching(station):
+    return replace(station, touching=frozendict({"contact": frozen_array([[0.0, np.nan]])}))
+
+
+def last(size, value):
+    return [0.0] * (size - 1) + [value]
+
+
+STATIONS = {
+    "missing probe": (without("BD.rotation"), "BD.rotation is missing"),
+    "shape of a probe": (with_value("A.reaction", [1.0, 2.0, 3.0]), "A.reaction has the shape (3,)"),
+    "empty probe": (with_value("BD.rotation", []), "BD.rotation has the shape (0,)"),
+    "descending ends": (with_value("contact.ends", [0.05, 0.02]), "contact.ends are not ascending"),
+    "certificate": (certified(failures=("not in balance",)), "its certificate does not hold: not in balance"),
+    "number of the certificate": (certified(residual=np.nan), "its certificate holds a number that is not finite"),
+    "shape": (drawn(x=np.nan), "beam1 has no shape of finite numbers"),
+    "no shape": (drawn(), "beam1 has no shape of finite numbers"),
+    "place of contact": (touching, "a place of contact is not finite"),
+} | {
+    f"{probe} {value}": (with_value(probe, last(size, value)), f"{probe} is not finite")
+    for probe, size in (("B.displacement", 2), ("contact.force", 1), ("beam2.bending_stress", 81))
+    for value in (np.nan, np.inf, -np.inf)
+}
+
+
+@pytest.mark.parametrize(("change", "problem"), STATIONS.values(), ids=STATIONS)
+def test_a_station_with_a_problem_in_a_solver_is_not_reached(hinge, change, problem):
+    """A problem at 0.603 in the CPRBM and at 0.335 in the finite elements, in every run: both are told once."""
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    found = compared(asked, altered(C, change, 0.603), altered(F, change, 0.335))
+    assert (word_of(found), found.verdict.completed) == ("UNDECIDED RUN_ENDED", False)
+    for solver, station in (("cprbm", "0.603"), ("fea", "0.335")):
+        assert found.verdict.sentence.count(f"at load {station} N·m {problem}") == 1, solver
+        assert f"{solver}, {solver} finer, {solver} beside: at load {station} N·m {problem}" in found.verdict.sentence
+    reached = list(dict.fromkeys(row.station for row in found.rows))
+    assert reached == [station for station in hinge.stages[0].stations if station not in (0.335, 0.603)]
+
+
+def ended(scene, choices):
+    return replace(C(scene, choices), ending=Ending.STEP_TOO_SMALL, sentence="The step is too small.")
+
+
+def repeated(scene, choices):
+    found = C(scene, choices)
+    return replace(found, stations=(*found.stations, found.stations[-1]))
+
+
+@pytest.mark.parametrize(
+    ("cprbm", "problem", "stations", "word"),
+    [
+        (replace(C, until=7), "it has no station load 0.536 N·m (and 2 more)", 7, "UNDECIDED RUN_ENDED"),
+        (replace(C, until=0), "it has no station load 0.067 N·m (and 9 more)", 0, "UNDECIDED RUN_ENDED"),
+        (ended, "it ended early: The step is too small.", 10, "UNDECIDED RUN_ENDED"),
+        (ending(C, 4), "it ended early: It stuck.", 4, "UNDECIDED RUN_ENDED"),
+        (repeated, "it has 11 stations where 10 were asked", 10, "UNDECIDED RUN_ENDED"),
+        (replace(C, stiffness=1.02, until=7), "it has no station load 0.536 N·m (and 2 more)", 7, "DIFFER VALUES"),
+    ],
+    ids=["stops unsaid", "nothing", "says so", "stops", "more stations", "fault before the end"],
+)
+def test_a_compared_run_without_all_stations_is_not_complete(hinge, cprbm, problem, stations, word):
+    found = compared(hinge, cprbm, F)
+    assert (word_of(found), found.verdict.completed) == (word, False)
+    assert found.verdict.sentence.count(problem) == 1
+    assert len({row.station for row in found.rows}) == stations
