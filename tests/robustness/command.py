@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
 from comparisons.cases import opened
+from comparisons.choices import KINEMATICS
 from comparisons.cli.commands import SolvingCommand
 from comparisons.cli.options import OUTPUT, folder, positive, whole
 from comparisons.cli.output import Request, bar, print_tables, write_json
 from comparisons.pairing import solvers_of
 from tests.robustness import tables
+from tests.robustness.judging import Effort
 from tests.robustness.limited import Limits
 from tests.robustness.outcomes import Outcome, Way
 from tests.robustness.running import Crew, Plan, Stress, replayed, run
@@ -27,7 +30,8 @@ def judge(
 ) -> int:
     """Judge both solvers on random scenes, or on a single scene; the exit code."""
     solvers = solvers_of(request.planted)
-    plan = Plan(seed, limits=Limits(seconds=request.at_most))
+    first = replace(Effort().first, theory=request.choices.theory)
+    plan = Plan(seed, Effort(first), Limits(seconds=request.at_most))
     if replay is not None:
         request.with_room()
         there = Stress(plan, {0: replayed(opened(str(replay)), solvers, plan)}, {})
@@ -91,6 +95,8 @@ command = SolvingCommand(
                      help="Save scenes with this outcome too, beside wrong, crashed and timed out."),
         click.Option(["--replay"], type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.toml",
                      help="Judge a single scene."),
+        click.Option(["--theory"], type=click.Choice(KINEMATICS),
+                     help="Beam theory of both solvers.  [default: the scene's, bending of drawn scenes]"),
         *OUTPUT,
         folder(help="Folder of outcomes and failing scenes; a run goes on from there.  [default: 'robustness-SEED']"),
     ],

@@ -78,6 +78,8 @@ class Fated:
                 return replace(found, stations=found.stations[:1], ending=Ending.STEP_TOO_SMALL, sentence="Too small.")
             case "refused":
                 raise SceneError([Mistake("beams", "a beam", "none of these")])
+            case "theory":
+                raise SceneError([Mistake("theory", choices.theory_of(scene), "none")])
             case "vague":
                 return MadeUp("cprbm", 6.4, contact=False)(scene, choices)
         return found

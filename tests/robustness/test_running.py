@@ -415,6 +415,14 @@ def test_a_scene_is_replayed_from_its_file(tmp_path, capsys):
     assert "crashed. a process ended with 7" in capsys.readouterr().out
 
 
+def test_the_option_theory_reaches_the_solvers(tmp_path, capsys):
+    file = tmp_path / "theory.toml"
+    file.write_text(toml_of({**fated(0, 0).data, "name": "theory"}), "utf-8")
+    for theory in ("shear", "bending"):
+        assert command(["robustness", "--replay", str(file), "--theory", theory], fated_solvers()) == 3
+        assert f"refused. theory: found {theory}" in " ".join(capsys.readouterr().out.split())
+
+
 INTERRUPTED = """
 from comparisons.pairing import Solvers
 import comparisons.cli.main as main
