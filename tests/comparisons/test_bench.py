@@ -298,7 +298,7 @@ def test_bench_prints_and_writes_numbers_figures_and_the_machine(right, capsys, 
 
 
 def test_bench_runs_the_real_ones_beside_the_peers(capsys):
-    arguments = ["bench", "hinge", "--sizes", "20", "--repeat", "1", "--method", "paper", "--method", "slsqp"]
+    arguments = ["bench", "hinge", "--sizes", "15", "--repeat", "1", "--method", "paper", "--method", "slsqp"]
     assert run([*arguments, "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert [row["ended"] for row in data["rows"]] == ["COMPLETED", "COMPLETED"]

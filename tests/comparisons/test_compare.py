@@ -243,21 +243,18 @@ def test_curves_have_the_lengths_and_points_of_elementary_geometry():
     parabola = Polynomial(kind="polynomial", axis="x", coefficients=(0.0, 0.0, 0.5), range=(2.0, -1.0))
     # reference: y = x²/2 has the arc length ½(x √(1 + x²) + arsinh x) from its vertex
     to_vertex, beyond = (0.5 * (x * math.hypot(1.0, x) + math.asinh(x)) for x in (2.0, 1.0))
-    for curve, expected in (
-        (HALF, 2.0 * math.pi),
-        (QUARTER, 0.5 * math.pi),
-        (three_quarters, 1.5 * math.pi),
-        (line, 5.0),
-        (parabola, to_vertex + beyond),
+    whole = 2.0 * math.pi
+    for curve, expected, s, places in (
+        (HALF, whole, [0.0, 0.5 * whole, whole], [[-2, 0], [0, -2], [2, 0]]),
+        (QUARTER, 0.25 * whole, [0.125 * whole], [[1 + math.sqrt(0.5), -math.sqrt(0.5)]]),
+        (three_quarters, 0.75 * whole, [0.0], [[2, 0]]),
+        (line, 5.0, [0.0, 2.5, 5.0], [[1, 1], [2.5, 3], [4, 5]]),
     ):
-        assert length(curve) == pytest.approx(expected, rel=1e-14), curve
-    for curve, s, expected in (
-        (HALF, [0.0, math.pi, 2.0 * math.pi], [[-2, 0], [0, -2], [2, 0]]),
-        (QUARTER, [0.25 * math.pi], [[1 + math.sqrt(0.5), -math.sqrt(0.5)]]),
-        (line, [0.0, 2.5, 5.0], [[1, 1], [2.5, 3], [4, 5]]),
-        (parabola, [0.0, to_vertex, to_vertex + beyond], [[2, 2], [0, 0], [-1, 0.5]]),
-    ):
-        np.testing.assert_allclose(points(curve, np.array(s)), expected, atol=1e-13, err_msg=curve.kind)
+        assert length(curve) == pytest.approx(expected, rel=1e-15), curve
+        np.testing.assert_allclose(points(curve, np.array(s)), places, atol=1e-15, err_msg=curve.kind)
+    assert length(parabola) == pytest.approx(to_vertex + beyond, rel=1e-14)
+    found = points(parabola, np.array([0.0, to_vertex, to_vertex + beyond]))
+    np.testing.assert_allclose(found, [[2, 2], [0, 0], [-1, 0.5]], atol=1e-13)
 
 
 def test_the_exact_offset_of_an_arc_and_of_the_parabola(question):

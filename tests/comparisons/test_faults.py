@@ -295,9 +295,9 @@ def test_a_call_in_another_process_returns_raises_or_names_its_end(monkeypatch):
 def terminal():
     """Exit code, standard output in a pipe, and standard error on a terminal, of three commands of a process."""
     commands = (
-        ["solve", "hinge", "-n", "13"],
-        ["compare", "offset", "tapered", "-n", "20", "--elements", "20", "--no-exact"],
-        ["solve", "hinge", "-n", "13", "-v", "--quiet"],
+        ["solve", "hinge", "-n", "11"],
+        ["compare", "offset", "tapered", "-n", "10", "--elements", "10", "--no-exact"],
+        ["solve", "hinge", "-n", "11", "-v", "--quiet"],
     )
     try:
         return on_a_terminal(commands)
