@@ -1,4 +1,4 @@
-"""Made-up solvers whose errors fall with N by a stated law, and their families of sizes."""
+"""Made-up solvers with laws of the error against N, and changes of answers by size."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.verdict.made_up import MadeUp
 
 @dataclass
 class Noting:
-    """Notes what a solver is asked."""
+    """A solver with a list of its questions."""
 
     solver: MadeUp
     asked: list
@@ -28,7 +28,7 @@ class Noting:
 
 
 class Scattered(MadeUp):
-    """An error that does not fall with N: the error at one N says nothing of another N."""
+    """A solver with an error at random in N: the error at an N predicts no error at another N."""
 
     def __call__(self, scene, choices):
         count = choices.links if self.solver == "cprbm" else choices.elements
@@ -38,7 +38,7 @@ class Scattered(MadeUp):
 
 @dataclass
 class Falling:
-    """A made-up solid whose error falls with the power p of n from C at n = 20; the solid notes the questions."""
+    """A made-up solid with the error C (20/n)^p and a list of its questions."""
 
     C: float
     p: float

@@ -317,7 +317,7 @@ def test_the_program_writes_table_and_drawing_of_an_answer_and_of_comparisons(ri
 
 
 def row(value, reference, *, station=1.0, quantity="reaction", scale=100.0):
-    """A row of one component whose fraction is of the scale."""
+    """A row of a single component with fractions of the scale."""
     probe = Probe(of="A", quantity=quantity)
     both = frozen_array([value]), frozen_array([reference])
     return Row(probe, "load", station, "N", *both, scale, scale, difference=abs(value - reference))
@@ -341,7 +341,7 @@ def test_a_claim_without_a_station_stands_at_every_row_of_its_probe_and_has_one_
         assert each["claim_met"] is (each["claim_difference"] <= 0.005)
     others = {(each["claim"], each["claim_difference"]) for each in found if each["probe"] != "BD.rotation"}
     assert others == {(None, None)}
-    # one line with the worst station and the number of stations that meet the claim
+    # the claim has a line with the worst station and the number of met stations
     fractions = {row.station: claim_difference(row) for row in comparison.rows if row.probe.name == "BD.rotation"}
     worst = max(fractions, key=fractions.get)
     met = sum(fraction <= 0.005 for fraction in fractions.values())
@@ -370,7 +370,7 @@ def test_a_claim_of_a_station_goes_before_one_of_all_and_has_a_row_within_round_
     assert claim_of(scene, row(1.0, 1.0, station=2.0)) is here
     assert claim_of(scene, row(1.0, 1.0, station=1.0)) is everywhere
     assert claim_of(scene, row(1.0, 1.0, quantity="force")) is None
-    # every station that the check of a scene lets pass has its row
+    # every station within the tolerance of the scene check has a row
     near = Claim(probe="BD.rotation", station=0.67 * (1.0 + 1e-10), bound=0.01)
     assert not list(mistakes_in(claiming(hinge, near)))
     assert standings(claiming(hinge, near), [replace(row(1.0, 1.0, station=0.67), probe=ROTATION)])
@@ -383,7 +383,7 @@ def test_a_claim_of_a_force_is_of_the_value_there(hinge, right):
         assert small.fraction(small.difference) == pytest.approx(0.002)
         assert claim_difference(small) == pytest.approx(0.02)
         assert claim_met(Claim(probe=small.probe.name, bound=0.01), small) is False
-    # of a vanishing force it is of the stage's largest, and so it is of a place of the beam
+    # a claim of a vanishing force, or of a place of the beam, is relative to the largest value of the stage
     assert claim_difference(row(0.9, 0.5)) == pytest.approx(0.004)
     assert claim_difference(row(10.2, 10.0, quantity="centre")) == pytest.approx(0.002)
     scene = claiming(hinge, Claim(probe="contact.force", station=0.335, bound=0.01))

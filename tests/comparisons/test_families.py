@@ -337,7 +337,7 @@ def test_the_order_is_seen_on_three_meshes_and_assumed_on_two(hinge):
 
 
 def test_a_bar_bends_as_timoshenko_says_within_what_is_asked():
-    # P L³/(3 E I) + 6 P L/(5 G A); the ends, which cannot warp, take less than half of the second term from it
+    # P L³/(3 E I) + 6 P L/(5 G A); the ends cannot warp and take less than half of the second term
     L, t, P = 0.31, 0.034, 0.011
     scene = bar(straight(L), t, poisson=0.35, stations=(P,), probes=(("tip", "displacement"),))
     solvers = Solvers(solid=solid_answer)

@@ -227,7 +227,7 @@ def test_a_signal_while_modules_are_loaded_is_a_sentence(number, code):
 
 
 def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_path):
-    """The whole group of processes is interrupted, as a terminal does it, while its workers solve."""
+    """The whole group of processes is interrupted, as on a terminal, while the workers solve."""
     (tmp_path / "program.py").write_text(WAITING, "utf-8")
     process = subprocess.Popen(
         [sys.executable, "program.py", "compare", "hinge"],

@@ -321,7 +321,7 @@ def test_smooth_numbers_take_a_third_of_their_room(hinge, right):
 
 
 class Counting:
-    """A solver that counts its solves."""
+    """A solver with a count of solves."""
 
     def __init__(self):
         self.solved = 0

@@ -216,7 +216,7 @@ def test_a_contact_in_a_point_and_a_window_of_beams_have_a_legible_size(solved, 
 
 
 def test_the_cells_of_beams_and_of_a_circle_have_their_volumes(solved, tapered):
-    """Of a bent strip it is length times section, wherever its neutral line goes (Pappus)."""
+    """The volume of a bent strip is length times section, for any path of the neutral line (Pappus)."""
     scene, _, views = solved
     expected = sum(
         math.pi * math.dist(beam.curve.center, beam.curve.start) * beam.thickness * beam.width
@@ -226,7 +226,7 @@ def test_the_cells_of_beams_and_of_a_circle_have_their_volumes(solved, tapered):
     assert len(block.cells) == 2 * (SECTIONS - 1) * ACROSS
     # chords in the place of arcs that turn by δ = π/240: sin δ/δ of the area, and as much again for the solver's line
     assert volume(block.places, block.cells) == pytest.approx(expected, rel=2.0 * (math.pi / 240) ** 2 / 6.0)
-    # its places at 19 links, two to a link, and what bends between them where a contact presses
+    # places at 19 links, two to a link, and bending between the places under a contact
     last = beam_block(views[-1])
     assert volume(last.places, last.cells) == pytest.approx(expected, rel=1e-3)
     scene, answer = tapered

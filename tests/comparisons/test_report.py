@@ -23,7 +23,7 @@ VOID = {"wbr", "meta", "link", "br", "input", "img"}
 
 
 class Page(HTMLParser):
-    """All elements of a page with their attributes, in order, and those that are in a figure."""
+    """All elements of a page with attributes, in order, and the open elements around."""
 
     def __init__(self, text):
         super().__init__()
@@ -47,7 +47,7 @@ class Page(HTMLParser):
 
 @dataclass(frozen=True)
 class Counting:
-    """A solver that counts how often it is asked, and is stopped at a certain time."""
+    """A solver with a count of questions, interrupted at a given count."""
 
     solver: MadeUp
     asked: count = field(repr=False)  # the key of a kept answer contains the solver
@@ -60,14 +60,14 @@ class Counting:
 
 
 def counting(stopped_at=-1):
-    """Both solvers, and how often they have been asked so far."""
+    """Both solvers, and a function for the number of questions so far."""
     asked = count()
     both = (Counting(made, asked, stopped_at) for made in (MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4)))
     return Solvers(*both), lambda: asked.__reduce__()[1][0]
 
 
 def reported(out, solvers, *arguments, asked=("hinge",)):
-    """A report with a short family of sizes, its exit code and its page."""
+    """Exit code and page of a report with a short family of sizes."""
     code = run(["report", *asked, "--sizes", "10,20,40", "--out", str(out), "--quiet", *arguments], solvers)
     return code, (out / "index.html").read_bytes() if (out / "index.html").exists() else b""
 
@@ -84,7 +84,7 @@ def files(tmp_path):
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    """Reports without figures, which take longest of all that is no solve."""
+    """Reports without figures: figures take the most time after the solves."""
     monkeypatch.setattr(page, "figures_of", lambda found: ())
 
 

@@ -203,7 +203,7 @@ def program(tmp_path, *asked):
     ],
 )
 def test_a_library_of_the_core_that_is_wanting_is_a_sentence(tmp_path, library, asked, distribution):
-    """It stands in the way of its own name, as NumPy's does where a library of the system is wanting."""
+    """A file with the name of the library fails, as NumPy does without a library of the system."""
     (tmp_path / f"{library}.py").write_text('raise ImportError("\\n\\nPLEASE READ THIS\\n\\nlong advice")\n', "utf-8")
     done = program(tmp_path, *asked)
     assert (done.returncode, done.stdout) == (2, "")
@@ -376,7 +376,7 @@ def test_points_are_a_line_an_arc_or_a_spline_as_near_as_it_says_and_no_corner()
     t = np.linspace(0.0, 1.0, 201)
     p = np.concatenate([np.stack([t, 0.0 * t], axis=1), np.stack([1.0 + 0.0 * t[1:], t[1:]], axis=1)])
     assert fit(p, None, 1e-9) is None
-    # a spline is as near as it says: on y = sin x, whose distance from a place (x, y) near it is
+    # the deviation of a spline is the true deviation: on y = sin x, the distance of a near place (x, y) is
     # |y − sin x|/√(1 + cos²x) to first order
     x = np.linspace(0.0, 3.0, 2001)
     ways = np.array([[1.0, math.cos(at)] for at in (0.0, 3.0)])

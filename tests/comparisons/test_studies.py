@@ -1,4 +1,4 @@
-"""Error budgets and Table 1 of made-up solvers whose parts and seconds are known, and the commands that print both."""
+"""Error budgets and Table 1 of made-up solvers with known parts and seconds, and the commands that print both."""
 
 import json
 import math
@@ -122,7 +122,7 @@ def test_a_change_with_the_penetration_without_a_law_is_off_the_line_and_spoils_
 
 
 def a_solid(rotation, *, until=None):
-    """A third opinion whose values are those of the load times a factor, at every mesh."""
+    """A third opinion with the values of the load times a factor, at every mesh."""
 
     def answer(scene, choices):
         made = MadeUp("fea", 0.0, stiffness=1.0 / rotation, until=until)

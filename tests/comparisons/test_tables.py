@@ -47,7 +47,7 @@ def lines_of(table, width):
 
 
 def parts(lines):
-    """Number of printed tables: every table has one rule below its headers."""
+    """Number of printed tables: every table has a rule below the headers."""
     return sum(set(line.strip()) == {"─"} for line in lines)
 
 
@@ -212,7 +212,7 @@ def test_the_folder_holds_everything_and_the_page_shows_verdict_claims_and_certi
         "The formulation paper beside auto",
     ):
         assert part in text.replace(" %", "\u00a0%"), part
-    # a percentage stays on the line of its number in texts that fold: paragraphs, captions, and long cells
+    # in folding texts (paragraphs, captions, long cells) a percentage stays on the line of the number
     folding = re.findall(
         r'<(?:p|caption|figcaption|td class="[^"]*long)\b[^>]*>.*?</(?:p|caption|figcaption|td)>', text, re.DOTALL
     )
