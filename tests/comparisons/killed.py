@@ -36,7 +36,7 @@ material = "steel"
 start = {{ joint = "weld", point = "P" }}
 end = {{ joint = "weld", point = "Q" }}
 """
-NAMES = ("first", "second", "third", "fourth", "fifth")
+NAMES = ("first", "second", "third")
 
 
 @dataclass(frozen=True)

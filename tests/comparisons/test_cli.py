@@ -80,7 +80,7 @@ def test_the_exact_reference_is_asked_by_a_rule_or_by_an_option(command, option,
     assert any(row["exact"] is not None for row in rows) is there
 
 
-def test_solve_ends_with_0_or_1_also_without_a_station(right, capsys):
+def test_solve_ends_with_0_or_1_also_without_a_station_or_with_too_little_memory(right, capsys):
     assert run(["solve", "hinge"], right) == 0
     assert "B.displacement" in capsys.readouterr().out
     assert run(["solve", "hinge", "--solver", "fea", "--quiet"], Solvers(right.cprbm, ended(right.fea))) == 1
@@ -95,6 +95,14 @@ def test_solve_ends_with_0_or_1_also_without_a_station(right, capsys):
     case = json.loads(capsys.readouterr().out)["cases"][0]
     assert case["rows"] == []
     assert case["solvers"]["cprbm"]["ending"] == "STEP_TOO_SMALL"
+
+    def large(scene, choices):
+        raise MemoryError
+
+    said = "cprbm: The memory is too small for this model. Finished results stand; ask for fewer links.\n"
+    for command in ("solve", "compare"):
+        assert run([command, "hinge"], Solvers(large, large)) == 1
+        assert capsys.readouterr().err == said
 
 
 def test_compare_all_writes_the_report_where_it_stands_and_an_interruption_leaves_finished_cases(

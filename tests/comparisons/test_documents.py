@@ -67,9 +67,7 @@ FEW = Choices(links=10, elements=10)
 
 
 @pytest.fixture(scope="module")
-def case():
-    hinge = cases.opened("hinge")
-    right = Solvers(cprbm=MadeUp("cprbm", 2e-3), fea=MadeUp("fea", -5e-4))
+def case(hinge, right):
     data = json_document.comparison(compare(paired(hinge, Choices(), right)))
     return json.loads(text_of(data), parse_constant=lambda constant: pytest.fail(constant))
 

@@ -45,12 +45,6 @@ def _family(found, probe, station=LAST, method="cprbm"):
 
 
 @pytest.fixture(scope="module")
-def right():
-    """The made-up pair of ``conftest``, for a whole module."""
-    return Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
-
-
-@pytest.fixture(scope="module")
 def found(hinge, right):
     """All families of the hinge."""
     return _found(hinge, right)

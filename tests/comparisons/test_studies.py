@@ -26,12 +26,6 @@ LOAD = 0.067
 """Before the contact closes: there the rotation is 0.9 times the load, and 1 plus every error."""
 
 
-@pytest.fixture(scope="module")
-def right():
-    """The made-up pair of ``conftest``, for a whole module."""
-    return Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
-
-
 def account_with(hinge, solvers, choices=None):
     return account_of(hinge, choices or Choices(), AnswerMemory(solvers=solvers))
 

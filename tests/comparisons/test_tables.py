@@ -166,8 +166,8 @@ def test_numbers_on_a_page_align_at_their_points_and_words_stay_whole():
 
 
 @pytest.fixture(scope="module")
-def comparison():
-    return compare(paired(cases.opened("hinge"), Choices(), Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))))
+def comparison(hinge, right):
+    return compare(paired(hinge, Choices(), right))
 
 
 @pytest.fixture(scope="module")
