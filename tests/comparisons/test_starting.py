@@ -373,7 +373,7 @@ def test_points_are_a_line_an_arc_or_a_spline_as_near_as_it_says_and_no_corner()
     angle = np.linspace(0.2, 1.7, 151)
     p = np.stack([3.0 * np.cos(angle), 3.00003 * np.sin(angle)], axis=1)
     assert isinstance(fit(p, None, 1e-5).curve, Spline)
-    t = np.linspace(0.0, 1.0, 101)
+    t = np.linspace(0.0, 1.0, 201)
     p = np.concatenate([np.stack([t, 0.0 * t], axis=1), np.stack([1.0 + 0.0 * t[1:], t[1:]], axis=1)])
     assert fit(p, None, 1e-9) is None
     # the deviation of a spline is the true deviation: on y = sin x, the distance of a near place (x, y) is
