@@ -56,7 +56,7 @@ WORDS = [
     (["new", "a/b"], "found 'a/b'; allowed: letters"),
     (["new", ""], "found ''; allowed: letters"),
 ]
-NOT_NUMBERS = [
+NUMBERS = [
     *(
         ([command, "hinge", f"--tol={text}"], f"found {text!r}; allowed")
         for command in ("solve", "compare")
@@ -189,7 +189,7 @@ def _said(arguments, capsys):
 
 @pytest.mark.parametrize(
     ("arguments", "parts"),
-    [(words[0], words[1:]) for words in (*WORDS, *NOT_NUMBERS, *OUTPUTS)],
+    [(words[0], words[1:]) for words in (*WORDS, *NUMBERS, *OUTPUTS)],
     ids=lambda it: str(it[-1]),
 )
 def test_wrong_words(arguments, parts, folder, capsys):
