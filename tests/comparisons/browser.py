@@ -1,6 +1,6 @@
-"""A headless Chromium, spoken to in its own DevTools protocol over two pipes: no driver and no library between.
+"""A headless Chromium behind the DevTools protocol over two pipes, without a driver or library between.
 
-Messages are JSON and end with a zero byte; the browser reads them from its file descriptor 3 and writes to 4.
+Messages are JSON and end with a zero byte; the browser reads messages from the file descriptor 3 and writes to 4.
 """
 
 import base64
@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 WANTED = "no Chromium on this machine; on Debian or Ubuntu: apt-get install chromium"
 PATIENCE = 60.0
-"""Seconds of silence after which it is given up."""
+"""Seconds of silence before the test gives up."""
 
 _FLAGS = (
     "--headless",
@@ -32,26 +32,26 @@ _FLAGS = (
     "--hide-scrollbars",
     "--remote-debugging-pipe",
 )
-# in the child, which becomes the browser: the two pipes go to the descriptors that it knows
+# in the child, the later browser: the two pipes go to the descriptors 3 and 4
 _LAUNCH = """
 import os, sys
 its_in, its_out = (os.dup(int(each)) for each in sys.argv[1:3])
 os.dup2(its_in, 3)
 os.dup2(its_out, 4)
-for each in (3, 4):  # those that were there already are closed otherwise
+for each in (3, 4):  # descriptors 3 and 4 of the parent are closed otherwise
     os.set_inheritable(each, True)
 os.execv(sys.argv[3], sys.argv[3:])
 """
 
 
 def found():
-    """Where a Chromium is; None where there is none."""
+    """The path of a Chromium, or None."""
     return next(filter(None, map(shutil.which, NAMES)), None)
 
 
 @dataclass
 class Browser:
-    """A tab. ``said`` is all that the page has written to its console or has thrown, and what it could not load."""
+    """A tab. ``said`` has all messages of the console, exceptions, and requests to a network."""
 
     to_it: int
     from_it: int
@@ -61,7 +61,7 @@ class Browser:
     rest: bytes = b""
 
     def call(self, method, **parameters):
-        """What a method of the protocol answers; events that come before are looked at."""
+        """The answer of a method of the protocol; earlier events are read first."""
         number = next(self.numbers)
         message = {"id": number, "method": method, "params": parameters}
         if self.session:
@@ -74,7 +74,7 @@ class Browser:
                 return heard["result"]
 
     def wait(self, event):
-        """Go on when an event has come."""
+        """Wait for an event."""
         while self._next().get("method") != event:
             pass
 
@@ -90,7 +90,7 @@ class Browser:
         return answer["result"].get("value")
 
     def seen(self, width, height=900, *, dark=False, phone=False):
-        """Look at the page through a window of a size, in dark or light."""
+        """Show the page in a window of a size, in dark or light."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
@@ -104,11 +104,11 @@ class Browser:
                       **({"text": text} if text and kind == "keyDown" else {}))  # fmt: skip
 
     def picture(self, *, whole=False):
-        """What is seen, as PNG."""
+        """A picture of the window, as PNG."""
         return base64.b64decode(self.call("Page.captureScreenshot", captureBeyondViewport=whole)["data"])
 
     def pdf(self):
-        """The page as it is printed, on the paper that its style asks for."""
+        """The page as printed on the paper of the style."""
         return base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True, printBackground=False)["data"])
 
     def _next(self):

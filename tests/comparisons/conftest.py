@@ -10,7 +10,7 @@ def hinge():
     return cases.opened("hinge")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def right():
     """Two solvers that agree: 0.2 % and 0.05 % of error, half a per cent of theory."""
     # an import at the head would mark every test of the folder as dependent on internals

@@ -1,8 +1,8 @@
-"""A program that runs ``cprbm compare ... --out`` again and again and kills it, each time at another moment.
+"""A program that kills ``cprbm compare ... --out`` again and again, at random moments.
 
-A child is killed from inside, at the n-th of the events that Python audits (files opened, renamed and removed,
-folders made, modules sought), so that a moment does not depend on how fast the machine is; n is drawn from a seed.
-What stands in the folder is looked at after every kill.  Usage: ``killed.py FOLDER KILLS SEED``.
+A child dies at the n-th event of Python's audit: files opened, renamed and removed, folders made, modules sought.
+So the moment does not depend on the speed of the machine; n is drawn from a seed. The program checks the folder
+after every kill.  Usage: ``killed.py FOLDER KILLS SEED``.
 """
 
 import gzip
@@ -36,12 +36,12 @@ material = "steel"
 start = {{ joint = "weld", point = "P" }}
 end = {{ joint = "weld", point = "Q" }}
 """
-NAMES = ("first", "second", "third", "fourth", "fifth")
+NAMES = ("first", "second", "third")
 
 
 @dataclass(frozen=True)
 class Counting:
-    """A solver that leaves a mark in a file whenever it solves."""
+    """A solver with a mark in a file for every solve."""
 
     solver: MadeUp
     marks: Path
@@ -62,7 +62,7 @@ def ran(folder, out):
 
 
 def compared(folder, out, die_at=None):
-    """Compare all questions in a child that dies at an event; how it ended, and how many events it saw."""
+    """Status and number of events of a child that compares all questions and dies at an event."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
@@ -86,7 +86,7 @@ def compared(folder, out, die_at=None):
 
 
 def told(out):
-    """Cases on the page and in the JSON; fails where a file is not whole."""
+    """Cases on the page and in the JSON; fails if a file is not whole."""
     for file in out.rglob("*.json"):
         json.loads(file.read_text("utf-8"))
     for file in out.rglob(".unfinished/*.json.gz"):
@@ -99,7 +99,7 @@ def told(out):
 
 
 def main(folder, kills, seed):
-    """All kills; what came of them as JSON."""
+    """Kill all children, and print the counts as JSON."""
     pages.figures_of = lambda compared: ()  # figures are files as the others are, and take long
     for place, name in enumerate(NAMES):
         (folder / f"{name}.toml").write_text(QUESTION.format(name=name, length=0.1 + 0.013 * place), "utf-8")
@@ -117,7 +117,7 @@ def main(folder, kills, seed):
         status, _ = compared(folder, out, 1 + drawn.randrange(events // 2))
         if status == 0:
             ended["finished"] += 1
-            page, numbers = set(), set()  # what follows is a run of its own
+            page, numbers = set(), set()  # another run begins
             continue
         assert status == signal.SIGKILL, status
         ended["killed"] += 1

@@ -1,13 +1,11 @@
-"""The command line: output, messages and exit codes."""
+"""The command line: output, messages and exit codes, completion in a shell, and the developers' tools of a checkout."""
 
 import json
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
@@ -15,15 +13,16 @@ from pathlib import Path
 import pytest
 
 from comparisons import cases
-from comparisons.cli.main import commands, run
+from comparisons.cli import commands, main
+from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from comparisons.present import page
 from cprbm_scene import Ending
+from tests.comparisons.programs import ROOT, in_turn, told
 from tests.verdict.jumping import FORWARD, Jumping
 from tests.verdict.made_up import THEORY, MadeUp
 
 HINGE = Path(cases.__file__).parent / "hinge.toml"
-ROOT = Path(__file__).parents[2]
 
 
 def ended(solver, ending=Ending.STEP_TOO_SMALL):
@@ -34,18 +33,39 @@ def ended(solver, ending=Ending.STEP_TOO_SMALL):
     return answer
 
 
-def test_the_exit_code_of_compare(right, capsys):
+def out_and_err(capsys):
+    captured = capsys.readouterr()
+    return captured.out, captured.err
+
+
+def test_compare_ends_with_0_1_or_3_and_writes_json_and_tables(right, capsys, tmp_path):
     """0 if all agree, 1 if a case differs or a solver does not complete, 3 for nothing worse than undecided."""
     assert run(["compare", "hinge"], right) == 0
-    captured = capsys.readouterr()
-    assert "hinge: AGREE" in captured.out
-    assert captured.err == ""
+    out, err = out_and_err(capsys)
+    assert "hinge: AGREE" in out
+    assert err == ""
+    file = tmp_path / "new" / "numbers.json"
+    assert run(["compare", "hinge", "--json", str(file), "-v"], right) == 0
+    assert "Certificates" in capsys.readouterr().out
+    assert json.loads(file.read_text("utf-8"))["cases"][0]["verdict"] == "AGREE"
     assert run(["compare", "hinge"], Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)) == 1
     assert "hinge: DIFFER" in capsys.readouterr().out
     assert run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea)) == 1
     assert "UNDECIDED" in capsys.readouterr().out
     assert run(["compare", "hinge", "--quiet"], Solvers(MadeUp("cprbm", 2e-2), right.fea)) == 3
     assert capsys.readouterr().out.startswith("hinge: UNDECIDED")
+
+
+@pytest.mark.parametrize("command", ["compare", "solve"])
+def test_json_on_standard_output_is_alone_there_and_an_implausible_load_is_noted(right, tmp_path, capsys, command):
+    assert run([command, "hinge", "--json", "-"], right) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [case["case"] for case in data["cases"]] == ["hinge"]
+    assert ("verdict" in data["cases"][0]) is (command == "compare")
+    soft = tmp_path / "soft.toml"
+    soft.write_text(HINGE.read_text(encoding="utf-8").replace("2.3e9", "2.1e3"), encoding="utf-8")
+    run([command, str(soft), "--quiet"], right)
+    assert capsys.readouterr().err.startswith(f"Note: {soft}: loads.M: M L/(E I) is ")
 
 
 @pytest.mark.parametrize(
@@ -60,15 +80,7 @@ def test_the_exact_reference_is_asked_by_a_rule_or_by_an_option(command, option,
     assert any(row["exact"] is not None for row in rows) is there
 
 
-@pytest.mark.parametrize("command", ["solve", "compare"])
-def test_an_implausible_load_is_noted_before_the_answer(command, right, tmp_path, capsys):
-    soft = tmp_path / "soft.toml"
-    soft.write_text(HINGE.read_text(encoding="utf-8").replace("2.3e9", "2.1e3"), encoding="utf-8")
-    run([command, str(soft), "--quiet"], right)
-    assert capsys.readouterr().err.startswith(f"Note: {soft}: loads.M: M L/(E I) is ")
-
-
-def test_solve_ends_with_0_or_1_also_without_a_station(right, capsys):
+def test_solve_ends_with_0_or_1_also_without_a_station_or_with_too_little_memory(right, capsys):
     assert run(["solve", "hinge"], right) == 0
     assert "B.displacement" in capsys.readouterr().out
     assert run(["solve", "hinge", "--solver", "fea", "--quiet"], Solvers(right.cprbm, ended(right.fea))) == 1
@@ -84,42 +96,38 @@ def test_solve_ends_with_0_or_1_also_without_a_station(right, capsys):
     assert case["rows"] == []
     assert case["solvers"]["cprbm"]["ending"] == "STEP_TOO_SMALL"
 
+    def large(scene, choices):
+        raise MemoryError
 
-@pytest.mark.parametrize("command", ["compare", "solve"])
-def test_json_on_standard_output_is_alone_there(right, capsys, command):
-    assert run([command, "hinge", "--json", "-"], right) == 0
-    data = json.loads(capsys.readouterr().out)
-    assert [case["case"] for case in data["cases"]] == ["hinge"]
-    assert ("verdict" in data["cases"][0]) is (command == "compare")
-
-
-def test_json_in_a_file_comes_with_the_tables(right, capsys, tmp_path):
-    file = tmp_path / "new" / "numbers.json"
-    assert run(["compare", "hinge", "--json", str(file), "-v"], right) == 0
-    assert json.loads(file.read_text("utf-8"))["cases"][0]["verdict"] == "AGREE"
-    assert "Certificates" in capsys.readouterr().out
+    said = "cprbm: The memory is too small for this model. Finished results stand; ask for fewer links.\n"
+    for command in ("solve", "compare"):
+        assert run([command, "hinge"], Solvers(large, large)) == 1
+        assert capsys.readouterr().err == said
 
 
-def test_all_writes_the_report_where_it_stands(right, tmp_path, capsys, monkeypatch):
+def test_compare_all_writes_the_report_where_it_stands_and_an_interruption_leaves_finished_cases(
+    right, capsys, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(page, "figures_of", lambda compared: ())
-    monkeypatch.setattr(cases, "names", lambda: ("hinge", "offset", "tapered"))
+    monkeypatch.setattr(cases, "names", lambda: ("hinge", "tapered"))
     assert run(["compare", "all", "--quiet"], right) == 0
     text = (tmp_path / "report" / "index.html").read_text("utf-8")
     assert all(f'id="{name}"' in text for name in cases.names())
+    file = tmp_path / "second.toml"
+    file.write_text(HINGE.read_text("utf-8").replace('name = "hinge"', 'name = "second"'), "utf-8")
 
+    def interrupted(scene, choices):
+        if scene.name == "second":
+            raise KeyboardInterrupt
+        return right.fea(scene, choices)
 
-def test_options_reach_the_solvers(right, capsys):
-    asked = []
-
-    def noting(scene, choices):
-        asked.append(choices)
-        return right.cprbm(scene, choices)
-
-    arguments = ["--links", "beam1=30,beam2=40", "--formulation", "paper", "--elements", "60"]
-    assert run(["solve", "hinge", "--quiet", *arguments, "--penetration", "1e-6"], Solvers(noting, right.fea)) == 0
-    assert asked[0].links == {"beam1": 30, "beam2": 40}
-    assert (asked[0].formulation, asked[0].elements, asked[0].penetration) == ("paper", 60, 1e-6)
+    arguments = ["--out", str(tmp_path / "r"), "--json", str(tmp_path / "all.json"), "--quiet"]
+    assert run(["compare", "hinge", str(file), *arguments], Solvers(right.cprbm, interrupted)) == 130
+    assert "Interrupted" in capsys.readouterr().err
+    assert 'id="hinge"' in (tmp_path / "r" / "index.html").read_text("utf-8")
+    assert (tmp_path / "r" / "hinge" / "comparison.json").is_file()
+    assert len(json.loads((tmp_path / "all.json").read_text("utf-8"))["cases"]) == 1
 
 
 @pytest.mark.parametrize(
@@ -130,12 +138,12 @@ def test_options_reach_the_solvers(right, capsys):
         (("--theory", "bending", "--kinematics", "shear"), "shear"),
     ],
 )
-def test_the_theory_of_the_options_reaches_both_solvers_and_the_table(right, capsys, options, theory):
+def test_options_reach_both_solvers_and_the_theory_the_table(right, capsys, options, theory):
     asked = []
 
     def noting(name, theory_of):
         def answer(scene, choices):
-            asked.append((name, theory_of(choices)(scene)))
+            asked.append((name, theory_of(choices)(scene), choices))
             return getattr(right, name)(scene, choices)
 
         return answer
@@ -144,8 +152,14 @@ def test_the_theory_of_the_options_reaches_both_solvers_and_the_table(right, cap
     assert run(["compare", "hinge", "-v", *options], solvers) == 0
     assert f"both in the theory {theory}" in capsys.readouterr().out
     other = "shear" if theory == "bending" else "bending"
-    assert {found for name, found in asked if name == "fea"} == {theory}
-    assert {found for name, found in asked if name == "cprbm"} == {theory, other}
+    assert {found for name, found, _ in asked if name == "fea"} == {theory}
+    assert {found for name, found, _ in asked if name == "cprbm"} == {theory, other}
+    asked.clear()
+    arguments = ["--links", "beam1=30,beam2=40", "--formulation", "paper", "--elements", "60", "--penetration", "1e-6"]
+    assert run(["solve", "hinge", "--quiet", *arguments, *options], solvers) == 0
+    ((_, _, choices),) = asked
+    assert choices.links == {"beam1": 30, "beam2": 40}
+    assert (choices.formulation, choices.elements, choices.penetration) == ("paper", 60, 1e-6)
 
 
 @pytest.mark.parametrize(
@@ -168,93 +182,6 @@ def test_a_solver_answers_in_the_theory_of_its_options(hinge, right, solver, opt
     assert row[solver] == pytest.approx(0.9 * row["station"] * (1.0 + error + THEORY[theory]), rel=1e-9)
 
 
-def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):
-    file = tmp_path / "second.toml"
-    file.write_text(HINGE.read_text("utf-8").replace('name = "hinge"', 'name = "second"'), "utf-8")
-
-    def interrupted(scene, choices):
-        if scene.name == "second":
-            raise KeyboardInterrupt
-        return right.fea(scene, choices)
-
-    arguments = ["--out", str(tmp_path / "r"), "--json", str(tmp_path / "all.json"), "--quiet"]
-    assert run(["compare", "hinge", str(file), *arguments], Solvers(right.cprbm, interrupted)) == 130
-    assert "Interrupted" in capsys.readouterr().err
-    assert 'id="hinge"' in (tmp_path / "r" / "index.html").read_text("utf-8")
-    assert (tmp_path / "r" / "hinge" / "comparison.json").is_file()
-    assert len(json.loads((tmp_path / "all.json").read_text("utf-8"))["cases"]) == 1
-
-
-PROGRAM = "from comparisons.cli.program import main\nif __name__ == '__main__':\n    main()\n"
-
-
-def test_a_reader_that_goes_away_ends_the_program_quietly(tmp_path):
-    """The reading end is closed before anything is written, so the first write finds nobody."""
-    reading, writing = os.pipe()
-    os.close(reading)
-    with os.fdopen(writing, "wb") as nowhere:
-        done = subprocess.run(
-            [sys.executable, "-c", PROGRAM, "list"],
-            stdout=nowhere,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=ROOT,
-            check=False,
-        )
-    assert (done.returncode, done.stderr) == (141, "")
-
-
-WAITING = """
-import time
-from dataclasses import dataclass
-from pathlib import Path
-
-import comparisons.pairing
-from comparisons.cli.program import main
-
-
-class Waiting:
-    def __call__(self, scene, choices):
-        Path("started").touch()
-        time.sleep(600.0)
-
-
-@dataclass(frozen=True)
-class Planted:
-    cprbm: Waiting = Waiting()
-    fea: Waiting = Waiting()
-    exact: Waiting = Waiting()
-    solid: None = None
-
-
-if __name__ == "__main__":
-    comparisons.pairing.Solvers = Planted
-    main()
-"""
-
-
-def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_path):
-    """The whole group of processes is interrupted, as a terminal does it, while its workers solve."""
-    program = tmp_path / "program.py"
-    program.write_text(WAITING, "utf-8")
-    process = subprocess.Popen(
-        [sys.executable, str(program), "compare", "hinge"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        start_new_session=True,
-    )
-    while not (tmp_path / "started").exists():
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert said == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
-
-
 @pytest.mark.parametrize("installed", [True, False])
 def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, monkeypatch, installed):
     def version(name):
@@ -264,10 +191,11 @@ def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, m
 
     monkeypatch.setattr("comparisons.provenance.version", version)
     assert run(["--version"]) == 0
-    captured = capsys.readouterr()
-    assert captured.out == ("cprbm 3.2.1\n" if installed else "cprbm, run from its sources: no version is installed\n")
-    assert captured.err == ""
+    said = "cprbm 3.2.1\n" if installed else "cprbm, run from its sources: no version is installed\n"
+    assert out_and_err(capsys) == (said, "")
 
+
+# -- Critical values of the prestressed crank
 
 PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
 FEW = re.sub(r"shown = .*\n", "", PRESTRESSED)
@@ -289,7 +217,7 @@ def test_an_assembly_that_a_stop_forbids_is_found_while_solving_and_ends_with_2(
     assert "forbids the assembly" in capsys.readouterr().err
 
 
-def test_critical_values_are_printed_and_in_the_json(tmp_path, capsys):
+def test_critical_values_are_printed_are_in_the_json_and_go_with_n(tmp_path, capsys):
     solvers = Solvers(Jumping("cprbm"), Jumping("fea"))
     assert run(["compare", "prestressed", "-v"], solvers) == 0
     said = capsys.readouterr().out
@@ -297,17 +225,14 @@ def test_critical_values_are_printed_and_in_the_json(tmp_path, capsys):
     assert "1.2288 rad (70.41°)" in said
     assert "Branch by branch" in said
     assert len(said.splitlines()) < 300  # of 181 stations the named stations and the last
-    assert run(["solve", "prestressed", "--json", "-"], solvers) == 0
+    few = asked_of(tmp_path, FEW)
+    assert run(["solve", few, "--json", "-"], solvers) == 0
     case = json.loads(capsys.readouterr().out)["cases"][0]
     assert [each["stage"] for each in case["solvers"]["cprbm"]["critical"]] == ["forward", "back"]
-    assert run(["solve", "prestressed"], solvers) == 0
+    assert run(["solve", few], solvers) == 0
     assert "Critical values" in capsys.readouterr().out
-
-
-def test_critical_values_go_with_n(tmp_path, capsys):
-    """1e-4 rad at 40 links, falling with the square of N: the limit is where the made-up branch ends."""
-    solvers = Solvers(Jumping("cprbm"), Jumping("fea"))
-    assert run(["converge", asked_of(tmp_path, FEW), "--sizes", "40,80,160", "--json", "-"], solvers) == 0
+    # 1e-4 rad at 40 links, falling with the square of N: the limit is where the made-up branch ends
+    assert run(["converge", few, "--sizes", "40,80,160", "--json", "-"], solvers) == 0
     families = json.loads(capsys.readouterr().out)["families"]
     forward, *_ = (each for each in families if (each["probe"], each["solver"]) == ("critical", "cprbm"))
     assert forward["values"] == pytest.approx([FORWARD + 1e-4 / 4**k for k in range(3)])
@@ -317,19 +242,7 @@ def test_critical_values_go_with_n(tmp_path, capsys):
     assert (forward["component"], forward["station"], forward["loss"]) == ("forward", None, "fold")
 
 
-def test_help_shows_every_command_once_under_three_headings(capsys):
-    assert run(["--help"]) == 0
-    text = capsys.readouterr().out.partition("--help ")[2]
-    assert re.findall(r"^(\w[\w -]+):$", text, re.MULTILINE) == [
-        "Your mechanism",
-        "Built-in cases and evidence",
-        "Development",
-    ]
-    shown = re.findall(r"^  (\w+) {2,}\S", text, re.MULTILINE)
-    assert run(["nonsense"]) == 2
-    allowed = re.search(r"allowed: ([\w, ]+)\.", capsys.readouterr().err)[1].split(", ")
-    assert shown == allowed
-
+# -- Help and completion
 
 MODULE = [sys.executable, "-m", "comparisons"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT)}
@@ -342,6 +255,30 @@ def completed(*words):
     return [tuple(line.split(",")) for line in done.stdout.splitlines()]
 
 
+def test_help_shows_every_command_once_under_three_headings_with_the_tools_of_a_checkout(capsys):
+    assert run(["--help"]) == 0
+    text = capsys.readouterr().out.partition("--help ")[2]
+    headings = ["Your mechanism", "Built-in cases and evidence", "Development"]
+    assert re.findall(r"^(\w[\w -]+):$", text, re.MULTILINE) == headings
+    shown = re.findall(r"^  (\w+) {2,}\S", text, re.MULTILINE)
+    assert "robustness" in shown
+    assert run(["nonsense"]) == 2
+    assert shown == re.search(r"allowed: ([\w, ]+)\.", capsys.readouterr().err)[1].split(", ")
+    told = {name: tool[1] for name, tool in commands.TOOLS.items() if tool[1]}
+    assert told
+    for name, line in told.items():  # the list of commands says of a tool the first line of its own help
+        assert commands.load_tool(name).command.help.splitlines()[0] == line
+    assert run(["study"]) == 0
+    names = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert names == ["calibration", "relations", "table1"]
+    # the program is a module, too
+    listed = subprocess.run([*MODULE, "list"], env=ENVIRONMENT, capture_output=True, text=True, check=True)
+    assert [line.split()[0] for line in listed.stdout.splitlines()] == list(cases.names())
+    wrong = subprocess.run([*MODULE, "nothing"], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr.startswith("cprbm: found 'nothing'")
+
+
 def test_commands_options_cases_and_files_are_offered_where_they_may_stand():
     names = [("plain", name) for name in cases.names() if name.startswith("gripper")]
     assert len(names) > 1
@@ -350,18 +287,15 @@ def test_commands_options_cases_and_files_are_offered_where_they_may_stand():
     assert completed("cprbm", "compare", "hinge", "al") == [("file", "al"), ("plain", "all")]
     assert completed("cprbm", "so") == [("plain", "solve")]
     assert completed("cprbm", "bench", "hinge", "--method", "slsq") == [("plain", "slsqp")]
-
-
-def test_whatever_takes_a_case_offers_them():
     asking = {
         name: parameter
-        for name in commands.list_commands(None)
-        for parameter in commands.get_command(None, name).params
+        for name in main.commands.list_commands(None)
+        for parameter in main.commands.get_command(None, name).params
         if "CASE" in (parameter.metavar or "")
     }
     assert {"solve", "compare", "report"} <= set(asking)
     for name, parameter in asking.items():
-        context = commands.make_context("cprbm", [name, "--help"], resilient_parsing=True)
+        context = main.commands.make_context("cprbm", [name, "--help"], resilient_parsing=True)
         assert "wrapped" in [item.value for item in parameter.shell_complete(context, "wr")], name
 
 
@@ -383,9 +317,53 @@ echo "${{COMPREPLY[@]}}"
     assert done.stdout == "wrapped\n", done.stderr
 
 
-def test_the_program_is_a_module_too():
-    listed = subprocess.run([*MODULE, "list"], env=ENVIRONMENT, capture_output=True, text=True, check=True)
-    assert [line.split()[0] for line in listed.stdout.splitlines()] == list(cases.names())
-    wrong = subprocess.run([*MODULE, "nothing"], env=ENVIRONMENT, capture_output=True, text=True, check=False)
-    assert wrong.returncode == 2
-    assert wrong.stderr.startswith("cprbm: found 'nothing'")
+# -- An installed package, without the tools of a checkout
+
+PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
+ELSEWHERE = "is a developers' tool: it runs in a checkout of the repository, not from an installed package."
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """The packages as a wheel holds them, without ``tests`` and ``benchmarks``, with the stored kernels."""
+    folder = tmp_path_factory.mktemp("installed")
+    for package in PACKAGES:
+        shutil.copytree(ROOT / package, folder / package)
+    return folder
+
+
+WORDS = (
+    (["robustness", "--scenes", "3"], "robustness"),
+    (["robustness", "--help"], "robustness"),
+    (["study", "relations", "tapered"], "study relations"),
+    (["bench", "hinge", "--method", "ipopt"], "bench --method ipopt"),
+    (["bench", "hinge", "--method", "auto", "--method", "slsqp"], "bench --method slsqp"),
+)
+FURTHER = (["--help"], ["study"], ["bench", "tapered", "--sizes", "4", "--repeat", "1", "--json", "-"])
+
+
+def test_an_installed_package_names_the_tools_of_a_checkout_lists_none_and_times_its_own_solvers(installed, tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", in_turn([*(words for words, _ in WORDS), *FURTHER])],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed), "NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    found = told(done.stdout, done.stderr)
+    refused, taken = found[: len(WORDS)], found[len(WORDS) :]
+    assert refused == [(2, "", f"cprbm: 'cprbm {command}' {ELSEWHERE}\n") for _, command in WORDS]
+    assert [code for code, *_ in taken] == [0, 0, 0]
+    listed, studies, timed = (out for _, out, _ in taken)
+    assert "compare" in listed
+    assert "robustness" not in listed
+    assert "calibration" in studies
+    assert "relations" not in studies
+    # the first solve of an installation names the compilation
+    said = [line for _, _, err in taken for line in err.splitlines()]
+    assert [line for line in said if not line.startswith("cprbm compiles its kernels")] == []
+    data = json.loads(timed)
+    methods = [(row["method"], row["formulation"]) for row in data["rows"]]
+    assert methods == [("cprbm", "auto"), ("cprbm", "paper"), ("fea", None)]
+    assert data["tolerance"] is None

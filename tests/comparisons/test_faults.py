@@ -1,12 +1,14 @@
-"""Faults outside the program: kills, signals, full disks, closed streams, missing libraries."""
+"""The program beside its machine: kills, signals, full disks, closed streams, missing libraries, and terminals."""
 
 import errno
 import filecmp
 import gzip
 import json
+import logging
 import math
 import multiprocessing
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,18 +16,24 @@ import time
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from comparisons import writing
+from comparisons.case import compare
+from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.cli.output import Bar, bar
 from comparisons.executor import WorkerDiedError, call_fresh
-from comparisons.pairing import Solvers
+from comparisons.logs import PACKAGES, RUNS, level, steps_from
+from comparisons.pairing import Solvers, paired
 from comparisons.present import page
+from comparisons.writing import write
 from tests.comparisons.killed import NAMES, QUESTION
+from tests.comparisons.programs import ENVIRONMENT, MAIN, SIGNALLED, WAITING, WORKERS, on_a_terminal
 from tests.verdict.made_up import MadeUp
 
-ROOT = Path(__file__).parents[2]
 KILLS = 7
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def files_below(folder):
@@ -104,9 +112,8 @@ def kind_of(partial):
     return name.partition(".")[2] if ".unfinished" in partial.parts else name
 
 
-def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path, asked, monkeypatch, capsys):
+def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path, asked, right, monkeypatch, capsys):
     monkeypatch.setattr(page, "figures_of", lambda compared: ())
-    solvers = Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
     whole = tmp_path / "whole"
     arguments = ["compare", *asked, "--quiet", "--out"]
     opened, left, written = os.fdopen, [10**9], []
@@ -121,7 +128,7 @@ def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path,
         return stream
 
     monkeypatch.setattr(writing.os, "fdopen", full)
-    assert run([*arguments, str(whole)], solvers) == 0
+    assert run([*arguments, str(whole)], right) == 0
     writes = 10**9 - left[0]
     assert writes == len(written) > 10
     # a name in the folder of the second question is a name in the folder of the first; kept answers have one kind
@@ -130,7 +137,7 @@ def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path,
     for nth in (1, *kinds.values()):
         out = tmp_path / f"r{nth}"
         left[0] = nth
-        assert run([*arguments, str(out)], solvers) == 2
+        assert run([*arguments, str(out)], right) == 2
         said = capsys.readouterr().err
         assert said.startswith(f"cprbm: Cannot write {out}")
         assert said.endswith(f": {os.strerror(errno.ENOSPC)}.\n")
@@ -141,88 +148,97 @@ def test_a_full_disk_at_any_write_is_a_sentence_and_leaves_whole_files(tmp_path,
         for file in out.rglob(".unfinished/*.json.gz"):
             json.loads(gzip.decompress(file.read_bytes()))
         left[0] = 10**9
-        assert run([*arguments, str(out)], solvers) == 0
+        assert run([*arguments, str(out)], right) == 0
         assert same_files(whole, out)
 
 
+def test_a_failed_write_leaves_the_old_file_and_a_link_leads_no_file_out_of_the_folder(hinge, right, tmp_path):
+    file = tmp_path / "data.json"
+    write(file, "old")
+    with pytest.raises(UnicodeEncodeError):
+        write(file, "new \udc80")
+    assert file.read_text("utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [file]
+    elsewhere, folder = tmp_path / "elsewhere", tmp_path / "out"
+    for each in (elsewhere, folder):
+        each.mkdir()
+    (folder / "hinge").symlink_to(elsewhere)
+    comparison = compare(paired(hinge, Choices(), right))
+    with pytest.raises(OSError, match="outside the report's folder"):
+        page.put_case(folder, comparison)
+    assert list(elsewhere.iterdir()) == []
+    (folder / "index.html").symlink_to(elsewhere / "index.html")
+    page.put_page(folder, page.report_page([]))
+    assert list(elsewhere.iterdir()) == []
+
+
 @pytest.mark.parametrize("library", ["matplotlib", "jinja2", "rich"])
-def test_a_library_that_is_not_there_is_named_with_what_installs_it(tmp_path, asked, monkeypatch, capsys, library):
+def test_a_missing_library_is_named_with_the_command_that_installs_it(
+    tmp_path, asked, right, monkeypatch, capsys, library
+):
     for module in [name for name in sys.modules if name.partition(".")[0] == library]:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, library, None)
     page.renderer.cache_clear()
-    solvers = Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", -5e-4))
     quiet = [] if library == "rich" else ["--quiet"]
-    assert run(["compare", asked[0], *quiet, "--out", str(tmp_path / "r")], solvers) == 2
+    assert run(["compare", asked[0], *quiet, "--out", str(tmp_path / "r")], right) == 2
     said = capsys.readouterr().err
     assert f"The library {library}" in said
     assert f"-m pip install --upgrade --force-reinstall {library}" in said
     assert said.count("\n") == 1
 
 
-def test_too_little_memory_is_a_sentence(asked, capsys):
-    def large(scene, choices):
-        raise MemoryError
-
-    assert run(["compare", asked[0]], Solvers(large, large)) == 1
-    assert (
-        capsys.readouterr().err
-        == "cprbm: The memory is too small for this model. Finished results stand; ask for fewer links.\n"
-    )
+# -- Streams and signals
 
 
-@pytest.mark.parametrize("closed", ["full", "closed"])
-def test_standard_output_that_takes_nothing_is_a_sentence(closed):
-    shell = f"exec {sys.executable} -c 'from comparisons.cli.program import main; main()' list"
-    shell += " >/dev/full" if closed == "full" else " >&-"
-    done = subprocess.run(["sh", "-c", shell], stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, check=False)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert (os.strerror(errno.ENOSPC) if closed == "full" else "closed") in done.stderr
+def test_standard_output_that_takes_nothing_is_a_sentence_and_a_reader_that_goes_away_ends_quietly():
+    for where, said in ((">/dev/full", os.strerror(errno.ENOSPC)), (">&-", "closed")):
+        shell = f"exec {sys.executable} -c '{MAIN}' list {where}"
+        done = subprocess.run(["sh", "-c", shell], stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, check=False)
+        assert done.returncode == 2, where
+        assert done.stderr.count("\n") == 1
+        assert said in done.stderr
+    # the reading end is closed before anything is written, so the first write finds nobody
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "wb") as nowhere:
+        command = [sys.executable, "-c", MAIN, "list"]
+        done = subprocess.run(command, stdout=nowhere, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, check=False)
+    assert (done.returncode, done.stderr) == (141, "")
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_a_signal_while_modules_are_loaded_is_a_sentence(number, code):
-    """The program sends the signal at the import of a module, neither too early nor too late."""
-    program = f"""
-import os, signal, sys
-signal.signal({int(number)}, signal.SIG_DFL)  # a test run may be started so that it ignores the signal
-class Sending:
-    def find_spec(self, name, path=None, target=None):
-        if name == 'cprbm_scene.statement':
-            os.kill(os.getpid(), {int(number)})
-sys.meta_path.insert(0, Sending())
-sys.argv[1:] = ['solve', 'hinge']
-from comparisons.cli.program import main
-main()
-"""
+    program = SIGNALLED.format(number=int(number))
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=ENVIRONMENT, check=False)
-    assert done.returncode == code
-    assert done.stdout == ""
+    assert (done.returncode, done.stdout) == (code, "")
     assert done.stderr.startswith("cprbm: ")
     assert done.stderr.count("\n") == 1
 
 
-LONG = """
-import os, time
-from pathlib import Path
-from comparisons.choices import Choices
-from comparisons.executor import crew_of
-
-
-def waits(scene, choices):
-    Path(f"worker{os.getpid()}").touch()
-    time.sleep(600.0)
-
-
-if __name__ == "__main__":
-    with crew_of(2) as crew:
-        crew.answers([(waits, None, Choices()), (waits, None, Choices())])
-"""
+def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_path):
+    """The whole group of processes is interrupted, as on a terminal, while the workers solve."""
+    (tmp_path / "program.py").write_text(WAITING, "utf-8")
+    process = subprocess.Popen(
+        [sys.executable, "program.py", "compare", "hinge"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=tmp_path,
+        env=ENVIRONMENT,
+        start_new_session=True,
+    )
+    while not (tmp_path / "started").exists():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
 
 
 def test_no_worker_outlives_the_process_that_was_killed(tmp_path):
-    (tmp_path / "program.py").write_text(LONG, "utf-8")
+    (tmp_path / "program.py").write_text(WORKERS, "utf-8")
     process = subprocess.Popen([sys.executable, "program.py"], cwd=tmp_path, env=ENVIRONMENT)
     while len(workers := list(tmp_path.glob("worker*"))) < 2:
         assert process.poll() is None
@@ -244,20 +260,14 @@ def running(pid):
         return False
 
 
-def test_a_call_runs_in_another_process_and_its_value_or_exception_comes_back():
-    assert call_fresh(os.getpid) != os.getpid()
+def test_a_call_in_another_process_returns_raises_or_names_its_end(monkeypatch):
     assert call_fresh(math.hypot, 3.3, 5.6) == 6.5
     with pytest.raises(ValueError, match="math domain error"):
         call_fresh(math.sqrt, -0.3)
+    for ends, by, code in ((os._exit, 139, 139), (signal.raise_signal, 9, -9)):
+        with pytest.raises(WorkerDiedError, match=f"ended with {code}$"):
+            call_fresh(ends, by)
 
-
-@pytest.mark.parametrize(("ends", "by", "with_"), [(os._exit, 139, 139), (signal.raise_signal, 9, -9)])
-def test_one_that_ends_by_force_is_told_of(ends, by, with_):
-    with pytest.raises(WorkerDiedError, match=f"ended with {with_}$"):
-        call_fresh(ends, by)
-
-
-def test_an_interrupt_ends_it(monkeypatch):
     def interrupted(_):
         raise KeyboardInterrupt
 
@@ -265,3 +275,98 @@ def test_an_interrupt_ends_it(monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         call_fresh(signal.pause)
     assert not multiprocessing.active_children()
+
+
+# -- Progress: bars on a terminal alone, sentences on request
+
+
+@pytest.fixture(scope="module")
+def terminal():
+    """Exit code, standard output in a pipe, and standard error on a terminal, of three commands of a process."""
+    commands = (
+        ["solve", "hinge", "-n", "11"],
+        ["compare", "offset", "tapered", "-n", "10", "--elements", "10", "--no-exact"],
+        ["solve", "hinge", "-n", "11", "-v", "--quiet"],
+    )
+    try:
+        return on_a_terminal(commands)
+    except OSError as error:
+        pytest.skip(f"no pseudo-terminal can be opened ({error}): mount devpts on /dev/pts")
+
+
+def test_on_a_terminal_a_bar_or_sentences_go_to_the_end_and_the_tables_go_where_they_are_sent(terminal):
+    code, out, seen = terminal[0]
+    assert code == 0
+    parts = [int(part) for part in re.findall(r"(\d+)%", seen)]
+    # the hinge has ten stations
+    assert {10 * k for k in range(11)} <= set(parts)
+    assert parts == sorted(parts)
+    assert re.search(r"solving, about \d+ s left", seen)
+    assert "B.displacement" in out
+    assert "B.displacement" not in seen
+    assert "solving" not in out
+    code, out, seen = terminal[1]
+    assert code == 0
+    assert "case 1 of 2" in seen
+    assert re.search(r"case 2 of 2, about \d+ s left", seen)
+    assert "Summary" in out
+    code, out, seen = terminal[2]
+    assert (code, out) == (0, "")
+    lines = seen.splitlines()
+    assert len(lines) == 10
+    assert re.fullmatch(r"cprbm: hinge: cprbm, stage load: station 1 of 10, M = 0\.067, \d+ iterations?", lines[0])
+
+
+def test_a_comparison_says_which_of_its_runs_are_done_and_steps_are_heard_of_the_asked_loggers_alone(right, capsys):
+    assert run(["compare", "hinge", "--quiet", "-v"], right) == 0
+    lines = capsys.readouterr().err.splitlines()
+    done = [re.search(r"run (\d+) of (\d+) is done", line).groups() for line in lines]
+    whole = len(done)
+    assert whole > 3
+    assert done == [(str(number), str(whole)) for number in range(1, whole + 1)]
+    assert level() == logging.NOTSET
+    assert not any(logging.getLogger(name).handlers for name in PACKAGES)
+    heard = []
+    with steps_from((RUNS,), lambda done, whole: heard.append((done, whole))):
+        logging.getLogger(RUNS).info("x", extra={"done": 3, "whole": 7})
+        logging.getLogger(RUNS).info("no steps")
+        logging.getLogger("cprbm.march").info("x", extra={"done": 5, "whole": 7})
+    logging.getLogger(RUNS).info("x", extra={"done": 4, "whole": 7})
+    assert heard == [(3, 7)]
+
+
+def test_who_does_not_listen_costs_no_sentence(right, monkeypatch):
+    """No record is made without a listener at the level."""
+    made = []
+    monkeypatch.setattr(logging.Logger, "makeRecord", lambda *given, **named: made.append(given))
+    assert run(["solve", "hinge", "--quiet"], right) == 0
+    import cprbm
+    from comparisons.cases import opened
+
+    assert cprbm.answer(opened("hinge"), cprbm.Settings(links=11)).completed
+    assert made == []
+
+
+@given(st.lists(st.lists(st.integers(1, 9), min_size=1, max_size=4), min_size=1, max_size=4))
+def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items):
+    moves, before = [], 0.0
+    shown = Bar(moves.append)
+    for place, each in enumerate(shown.through(items)):
+        assert moves[-1] == place
+        for whole in each:
+            for done in range(1, whole + 1):
+                shown.step(done, whole)
+                assert before - 1e-12 <= moves[-1] <= place + 1.0
+                before = moves[-1]
+    assert before == len(items)
+
+
+def test_one_round_goes_evenly_to_the_end_and_items_are_handed_on_as_they_are():
+    moves = []
+    with_steps = Bar(moves.append)
+    for done in (1, 2, 3, 4):
+        with_steps.step(done, 4)
+    assert moves == [0.25, 0.5, 0.75, 1.0]
+    for shown in (True, False):
+        with bar(3, shown=shown) as progress:
+            assert list(progress.through([3, 1, 2])) == [3, 1, 2]

@@ -9,6 +9,7 @@ import pytest
 from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
+from cprbm_scene import SceneError
 
 HINGE = (Path(cases.__file__).parent / "hinge.toml").read_text("utf-8")
 PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
@@ -54,6 +55,40 @@ WORDS = [
     (["new", "a  b"], "found 'a  b'; allowed: letters"),
     (["new", "a/b"], "found 'a/b'; allowed: letters"),
     (["new", ""], "found ''; allowed: letters"),
+]
+NUMBERS = [
+    *(
+        ([command, "hinge", f"--tol={text}"], f"found {text!r}; allowed")
+        for command in ("solve", "compare")
+        for text in ("0", "-1%", "100%", "1", "nan", "%", "tight", "1e-3%%", "inf")
+    ),
+    *(
+        ([command, "hinge", "--tol", "1%", *option], f"--tol and {option[0]}")
+        for command in ("solve", "compare")
+        for option in (["-n", "40"], ["--elements", "beam1=30,beam2=40"], ["--across", "3"])
+    ),
+    *((["converge", "hinge", "--sizes", sizes], "allowed") for sizes in ("40", "20,20", "ten,20", "", "0,10")),
+    (["bench", "hinge", "--sizes", "40,many"], "'many'"),
+    (["bench", "hinge", "--sizes", ""], "''"),
+    (["bench", "hinge", "--repeat", "0"], "'0'"),
+    (["bench", "hinge", "--at-most", "-1"], "'-1'"),
+    (["bench", "hinge", "--at-most", "nan"], "'nan'"),
+    (["bench", "hinge", "--method", "other"], "'other'"),
+    (["bench", "hinge", "--stations", "first"], "'first'"),
+    (["bench", "hinge", "-n", "beam1=many"], "'many'"),
+    (["bench", "hinge", "-n", "beam1=30"], "beam1=30"),
+    (["bench", "hinge", "-n", "40", "--sizes", "40"], "--sizes and -n"),
+]
+OUTPUTS = [
+    (["compare", "hinge", "--plot", "a.tiff"], "allowed: a name that ends in .svg or .png"),
+    (["solve", "offset"], "no equilibrium"),
+    (["bench", "offset"], "no equilibrium"),
+    (["view", "tapered", "--out", "t.pdf"], "found 't.pdf'; allowed: a name that ends in .3d.png, .3d.gif"),
+    (["view", "tapered", "--out", ".png"], "found '.png'; allowed"),
+    (["view", "tapered", "--station", "0.8"], "'0.8'; allowed: one of load:0.3, load:0.7, load:1.3, load:2.9"),
+    (["view", "tapered", "--station", "unload:0.7"], "found 'unload:0.7'; allowed"),
+    (["view", "tapered", "--station", "nan"], "found 'nan'; allowed"),
+    (["view", "tapered", "--quantity", "colour"], "'colour' is not one of"),
 ]
 UNITS = 'units = { length = "mm", force = "N", angle = "deg", stress = "MPa" }'
 FILES = [
@@ -152,12 +187,24 @@ def _said(arguments, capsys):
     return captured.err
 
 
-@pytest.mark.parametrize(("arguments", "parts"), [(words[0], words[1:]) for words in WORDS], ids=lambda it: str(it[-1]))
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [(words[0], words[1:]) for words in (*WORDS, *NUMBERS, *OUTPUTS)],
+    ids=lambda it: str(it[-1]),
+)
 def test_wrong_words(arguments, parts, folder, capsys):
     said = _said(arguments, capsys)
     assert said.count("\n") == 1
     for part in parts:
         assert part in said
+
+
+def test_a_built_in_case_has_the_name_of_its_question_and_no_other_name_opens_it():
+    assert len(cases.names()) > 5
+    assert [cases.asked(name).name for name in cases.names()] == list(cases.names())
+    for name in ("", "Hinge", "hinge2", "../cases/hinge", "hinge\n"):
+        with pytest.raises(SceneError, match=r"hinge|cannot be read"):
+            cases.opened(name)
 
 
 @pytest.mark.parametrize(("old", "new", "parts"), [(line[0], line[1], line[2:]) for line in FILES])

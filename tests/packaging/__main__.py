@@ -30,10 +30,10 @@ QUICK = (
     "tests/fea_reference/test_contact.py",
     "tests/elastica_reference/test_pieces.py",
     "tests/comparisons/test_starting.py",
-    "tests/comparisons/test_store.py",
     "tests/comparisons/test_documents.py",
     "tests/comparisons/test_pairing.py",
     "tests/comparisons/test_report.py",
+    "tests/comparisons/test_tables.py",
 )
 """Tests of every room that take minutes together, run under each Python with warnings as errors."""
 TEST_LIBRARIES = ("pytest", "hypothesis", "jsonschema")
