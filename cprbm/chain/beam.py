@@ -26,7 +26,7 @@ from typing import Literal, Self
 
 import numpy as np
 
-from cprbm.chain.spline import NeutralLine, nodes_through, polygon_line, spline_line
+from cprbm.chain.spline import NeutralLine, interpolation, polygon_line, spline_line
 from cprbm_scene import Beam, Material
 from cprbm_scene.answer import Array, Ints
 from cprbm_scene.curve_records import shape_of
@@ -211,7 +211,7 @@ def beam_chain(
     section, knots = Section(beam, length, units.length, young, shearing), beam.knots * length
     per_area = _integrals(lambda s: 1.0 / section.area(s), arcs, knots) / np.diff(arcs)
     line, nodes = spline_line(arcs) if corrected else polygon_line(arcs), units.place(curve.point(arcs / length))
-    nodes = nodes_through(nodes, line.control) if corrected else nodes
+    nodes = interpolation(len(nodes)).solve(nodes) if corrected else nodes
     (dx, dy), tangents = np.diff(nodes, axis=0).T, curve.tangent(borders / length)
     angles = np.unwrap(np.arctan2(tangents[:, 1], tangents[:, 0]))
     chain = BeamChain(

@@ -44,7 +44,7 @@ from typing import Literal
 
 import numpy as np
 from scipy.sparse import csr_matrix, identity, vstack
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import SuperLU, splu
 
 from cprbm_scene.answer import Array
 
@@ -131,12 +131,12 @@ def control_polygon(count: int) -> csr_matrix:
     return (vstack([before, polygon, behind]) - bends / 24.0).tocsr()
 
 
-def nodes_through(places: Array, control: csr_matrix) -> Array:
-    """Nodes (count, 2) of the spline through the inner ``places`` (count, 2); the outer two are kept."""
-    count = len(places)
+@lru_cache(maxsize=16)
+def interpolation(count: int) -> SuperLU:
+    """Factors of the matrix (count, count) from nodes to the spline's places; the outer nodes stay."""
+    control, ends = control_polygon(count), identity(count, format="csr")
     inner = (control[1:-3] + 4.0 * control[2:-2] + control[3:-1]) / 6.0
-    ends = identity(count, format="csr")
-    return np.asarray(spsolve(vstack([ends[:1], inner, ends[-1:]]).tocsc(), places))
+    return splu(vstack([ends[:1], inner, ends[-1:]]).tocsc())
 
 
 @lru_cache
