@@ -120,6 +120,9 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
         return _as_far_as_it_goes(scene, finding, memory)
     if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
         return finding
+    if finding.choices.theory_of(scene) != "bending":
+        # the exact answer is in bending
+        return finding
     exact = solvers.exact(scene, finding.choices)
     if not exact.stations:
         return finding

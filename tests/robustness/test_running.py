@@ -312,12 +312,16 @@ def test_an_exact_answer_that_is_far_is_wrong():
     exact = MadeUp("exact", 0.0, contact=False)
     off = MadeUp("exact", 0.0, stiffness=1.05, contact=False)
 
-    def way(third):
+    def way(third, effort):
         return judged(scene, replace(right, exact=lambda scene, choices: third(scene, replace(choices, links=10**6,
-            elements=10**6, kinematics="bending"))), Effort()).way  # fmt: skip
+            elements=10**6, kinematics="bending"))), effort).way  # fmt: skip
 
-    assert way(exact) is Way.AGREE
-    assert way(off) is Way.WRONG
+    assert way(exact, Effort()) is Way.AGREE
+    assert way(off, Effort()) is Way.WRONG
+    # the exact answer is in bending alone
+    in_shear = Effort(replace(Effort().first, theory="shear"))
+    alone = judged(scene, replace(right, exact=None), in_shear).way
+    assert way(off, in_shear) is alone is not Way.WRONG
 
 
 def test_an_answer_is_audited_once_however_often_it_is_compared(monkeypatch):
