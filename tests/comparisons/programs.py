@@ -3,8 +3,10 @@
 import os
 import pty
 import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -97,6 +99,30 @@ def told(out, err):
     assert codes == ENDS.findall(err)
     texts = ENDS.split(out)[::2], ENDS.split(err)[::2]
     return [(int(code), *said) for code, *said in zip(codes, *texts, strict=False)]
+
+
+def interrupted(words, folder, begun):
+    """Standard output of ``program.py`` in a folder after an interrupt from the keyboard once ``begun()`` is true.
+
+    The whole group of processes is interrupted, as on a terminal.  Checks the exit code and the sentence.
+    """
+    process = subprocess.Popen(
+        [sys.executable, "program.py", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=folder,
+        env=ENVIRONMENT,
+        start_new_session=True,
+    )
+    while not begun():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    out, sentence = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert sentence == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
+    return out
 
 
 def on_a_terminal(commands):

@@ -30,7 +30,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.present import page
 from comparisons.writing import write
 from tests.comparisons.killed import NAMES, QUESTION
-from tests.comparisons.programs import ENVIRONMENT, MAIN, SIGNALLED, WAITING, WORKERS, on_a_terminal
+from tests.comparisons.programs import ENVIRONMENT, MAIN, SIGNALLED, WAITING, WORKERS, interrupted, on_a_terminal
 from tests.verdict.made_up import MadeUp
 
 KILLS = 7
@@ -217,24 +217,9 @@ def test_a_signal_while_modules_are_loaded_is_a_sentence(number, code):
 
 
 def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_path):
-    """The whole group of processes is interrupted, as on a terminal, while the workers solve."""
+    """The workers solve at that moment."""
     (tmp_path / "program.py").write_text(WAITING, "utf-8")
-    process = subprocess.Popen(
-        [sys.executable, "program.py", "compare", "hinge"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=tmp_path,
-        env=ENVIRONMENT,
-        start_new_session=True,
-    )
-    while not (tmp_path / "started").exists():
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert said == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
+    interrupted(["compare", "hinge"], tmp_path, (tmp_path / "started").exists)
 
 
 def test_no_worker_outlives_the_process_that_was_killed(tmp_path):

@@ -1,8 +1,8 @@
-"""``python -m tests.packaging``: the wheel as whoever installs it has it, under each Python that is found.
+"""``python -m tests.packaging``: the installed wheel under every Python on this machine.
 
-Of each interpreter an environment of its own is made in a folder aside, the wheel put into it with what it asks for,
-and the program tried there, far from the checkout; then tests of the checkout run under it.  It ends with 1 if anything
-fails under any of them.  ``--lowest`` installs, under the oldest one, the lowest versions that are declared (by uv).
+Every interpreter has an environment in a folder aside.  The wheel is installed there with the declared libraries, the
+program is tried far from the checkout, and then tests of the checkout run.  A failure under any Python ends with 1.
+``--lowest`` installs the lowest declared versions under the oldest Python (by uv).
 """
 
 import argparse
@@ -56,7 +56,7 @@ WRONG = ((), ("nothing",), ("solve",), ("solve", "nothing"), ("new", "9"))
 
 @dataclass(frozen=True)
 class Tried:
-    """What was done, how it ended and should have, after how many seconds, and what it said."""
+    """A trial: the command, the exit code and the wanted code, the seconds, and the output."""
 
     what: str
     code: int
@@ -66,12 +66,12 @@ class Tried:
 
     @property
     def failed(self) -> bool:
-        """Whether it did not end as it should."""
+        """Whether the exit code is not the wanted code."""
         return self.code != self.wanted
 
 
 def interpreters() -> list[Path]:
-    """One interpreter for each version: on the path, or kept by pyenv."""
+    """An interpreter for every version: on the path, or installed by pyenv."""
     kept = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
     found = []
     for minor in MINORS:
@@ -83,7 +83,7 @@ def interpreters() -> list[Path]:
 
 
 def _is(python: Path, minor: int) -> bool:
-    """Whether it is that version: on the path may stand a word of pyenv's that there is none."""
+    """Whether an interpreter has a version: pyenv puts names of absent versions on the path."""
     done = subprocess.run([python, "-c", "import sys; print(sys.version_info[1])"], capture_output=True, check=False)
     return done.returncode == 0 and done.stdout.strip() == str(minor).encode()
 

@@ -1,4 +1,4 @@
-"""Scenes that say in their names what becomes of them, and a solver that does it."""
+"""Scenes with a fate in the name, and a solver that brings the fate about."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ WAYS = {
 
 
 def fated(seed: int, index: int) -> Drawn:
-    """A cantilever whose name says its fate; of another ``seed`` all are right."""
+    """A cantilever with a fate in the name; all scenes of seeds other than 0 are right."""
     fate = FATES[index % len(FATES)] if seed == 0 else "right"
     data = {**cantilever_data(force(0.3, -1.0), [0.11, 0.23]), "name": f"{fate}-{seed}-{index}"}
     return Drawn(data["name"], data, toml_of(data), 1)
@@ -95,6 +95,6 @@ def nothing() -> None:
 
 
 def slow(scene: Scene, choices: Choices) -> Answer:
-    """The same CPRBM, which takes its time."""
+    """The made-up CPRBM after a tenth of a second."""
     time.sleep(0.1)
     return MadeUp("cprbm", 2e-3, contact=False)(scene, choices)

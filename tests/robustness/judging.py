@@ -64,9 +64,16 @@ class Effort:
 
 @dataclass(frozen=True, slots=True)
 class _Finding:
-    """What one size says: a way, why, and the rows on which it rests; whether an audit ``doubts`` an answer; of answers
-    that ended, whose they are (``early``), how many stations they reached, and whether in all of them the branch is
-    ``over``, or was left where it is in others.
+    """Result of a size.
+
+    Attributes:
+        way, sentence, choices, runs: outcome and reason at the size, and the runs.
+        rows: on which the outcome rests.
+        ending: of an answer that ended early.
+        reached: number of reached stations.
+        early: solvers whose answers ended early.
+        doubts: whether an audit doubts an answer.
+        over: whether the branch ends in all answers, or was left where the branch ends in other answers.
     """
 
     way: Way
@@ -118,10 +125,8 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
         finding, left = finer if finer.way is Way.WRONG else _beside(scene, finding, finer), left - 1
     if finding.runs is None:
         return _as_far_as_it_goes(scene, finding, memory)
-    if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
-        return finding
-    if finding.choices.theory_of(scene) != "bending":
-        # the exact answer is in bending
+    in_bending = finding.choices.theory_of(scene) == "bending"  # as the exact answer
+    if solvers.exact is None or not in_bending or finding.way not in (Way.AGREE, Way.UNDECIDED):
         return finding
     exact = solvers.exact(scene, finding.choices)
     if not exact.stations:
@@ -131,7 +136,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> 
 
 
 def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
-    """What one size says; where one of the two compared answers ends early, nothing is asked beside them.
+    """Result of a size; no further run where one of both compared answers ends early.
 
     Raises:
         SceneError: a solver refuses the scene.
@@ -206,9 +211,9 @@ def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
 
 
 def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> bool:
-    """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next.
+    """Whether the ``left`` further sizes may decide the scene; after an early end or a doubt, whether the next may.
 
-    Not where every run says that the branch ends, or has gone on over that: a finer one would say it again.
+    Not where the branch ends in all runs, or was left there: a finer run would say so again.
     """
     if finding.over:
         return False
@@ -221,7 +226,7 @@ def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> 
 
 
 def _why(early: Iterable[tuple[str, Answer]]) -> str:
-    """Which answers ended early, and what each of them says of it."""
+    """Names, endings and sentences of the answers that ended early."""
     return "; ".join(f"{name}: {answer.ending.name}, {answer.sentence}" for name, answer in early)
 
 

@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -17,6 +16,7 @@ from comparisons.audit import audit
 from comparisons.cli.main import run as command
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, SceneError, read, scene_from
+from tests.comparisons.programs import interrupted
 from tests.robustness import auditing
 from tests.robustness.command import exit_code
 from tests.robustness.fates import FATES, WAYS, fated, fated_solvers, nothing
@@ -440,23 +440,8 @@ if __name__ == "__main__":
 
 
 def test_an_interrupt_leaves_what_is_finished_and_says_so(tmp_path):
-    program = tmp_path / "program.py"
-    program.write_text(INTERRUPTED, "utf-8")
-    process = subprocess.Popen(
-        [sys.executable, str(program), str(tmp_path / "out")],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        start_new_session=True,
-    )
-    while not list((tmp_path / "out").glob("*.jsonl")):
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)
-    out, said = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert said == "cprbm: Interrupted. Finished results stand; repeat the command to go on.\n"
+    (tmp_path / "program.py").write_text(INTERRUPTED, "utf-8")
+    out = interrupted(["out"], tmp_path, lambda: any((tmp_path / "out").glob("*.jsonl")))
     assert "scenes:" in out
     (file,) = (tmp_path / "out").glob("*.jsonl")
     assert Kept(file).read()[0]
