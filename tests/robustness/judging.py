@@ -1,23 +1,20 @@
-"""One scene judged: both solvers, the ordinary verdict, from coarse to fine until it can be told.
+"""The outcome of a scene: both solvers and the verdict, from coarse to fine sizes until the verdict decides.
 
-It is the verdict of ``compare`` on the runs on which it rests, at a size at which most scenes can be told: from 20 to
-160 links time grows by a quarter, and what is asked twice is paid twice.  Where it cannot be told, or a run ended
-early, the solver on whose account that is does it once more at twice its size: as often as the effort allows where
-what is stated promises to become little enough by that, and once where it is something else that keeps it.  The finer
-runs of one size are then the coarser ones of the next, and nothing is solved twice.  The verdict compares the stations
-that both reached, also where the answers end early at every size.
+The first size decides most scenes: from 20 to 160 links the time grows by a quarter, and a repetition costs the whole
+time again.  Without a decision, or after an early end, the solver with the larger uncertainty runs at twice its size.
+The sizes grow as often as the effort allows if smaller errors promise a decision, once for any other reason.  The
+finer runs of a size are the coarser runs of the next size: no run is solved twice.  The verdict compares the stations
+that both solvers reached, also where the answers end early at every size.
 
-All runs have one theory, the scene's or that of the choices; no step of theory leaves a scene undecided.
+All runs have one theory, the scene's or the theory of the choices; no step of theory leaves a scene undecided.
 
-An answer is *wrong* if it is certified and
+A certified answer is *wrong* if
 
-* a row of the verdict differs, also of a scene whose other stations were not reached, or an answer that calls itself
-  complete is not whole; or
-* a value is further from the finest that was found than F times what is stated of it; or
-* it is further from the exact answer, where one is known, than F times what is stated of it,
+* a row of the verdict differs, also in a scene without its other stations, or a complete answer lacks a part; or
+* a value is farther from the finest value than F times the stated error; or
+* a value is farther from the exact answer, where the exact answer is known, than F times the stated error,
 
-with the F of :mod:`comparisons.verdict.judge`: a stated uncertainty is to hold in 95 % of the rows and not in
-all.
+with the F of :mod:`comparisons.verdict.judge`: a stated uncertainty holds in 95 % of the rows, not in all rows.
 """
 
 from __future__ import annotations
@@ -43,19 +40,19 @@ from tests.robustness.outcomes import Outcome, Way
 from tests.robustness.strata import met, stated
 
 DOMINANT = 2.0
-"""Times that one solver states more than the other from which on it alone is refined."""
+"""Ratio of the stated errors from which the solver with the larger error alone is refined."""
 
 PROMISING = 2.0
-"""Times too much that may be foretold of a finer size by the second order: many errors fall faster."""
+"""Allowed excess of the error that the second order predicts for a finer size: many errors fall faster."""
 
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How much is done for one scene.
+    """Largest effort for a scene.
 
     Attributes:
         first: the coarsest choices.
-        sizes: how many there are at most, each of twice the links or elements, or of both, of the one before.
+        sizes: largest number of sizes; every size has twice the links or elements, or both, of the size before.
     """
 
     first: Choices = field(default_factory=lambda: Choices(links=80, elements=40))
@@ -91,7 +88,7 @@ class _Finding:
 def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
     """How a scene ends."""
     begun = time.process_time()
-    # those who know the exact answer are asked once, when the size is found
+    # the exact answer is computed once, at the size of the decision
     memory = Auditing(solvers=replace(solvers, exact=None))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -111,7 +108,7 @@ def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
 
 
 def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> _Finding:
-    """What the first size says that says something, or the finest.
+    """The finding of the first size with a decision, or of the finest size.
 
     Raises:
         SceneError: a solver refuses the scene.
@@ -153,7 +150,7 @@ def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
 
 
 def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
-    """The finding of answers that ended early, unless what they reached is wrong.
+    """The finding of answers that ended early, or a wrong part before the end.
 
     Raises:
         SceneError: a solver refuses the scene.
@@ -166,7 +163,7 @@ def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Fi
 
 
 def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
-    """The way in which a verdict is one of the seven."""
+    """The finding from a comparison."""
     verdict, runs = comparison.verdict, comparison.runs
     early = [(name, answer) for name, answer in runs.same_theory.items() if not answer.completed]
     sentence, ending = verdict.sentence, ""
@@ -190,9 +187,10 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
 
 
 def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
-    """Choices with twice the links or twice the elements, of which so many are left: of the solver whose runs ended
-    early, or state more than DOMINANT times what the other does in the rows that cannot be told, if what the other
-    states leaves it room enough; of both where that is neither.
+    """Choices with twice the links or elements of the solver whose runs ended early, or whose errors dominate.
+
+    Errors dominate above ``DOMINANT`` times the other solver's errors in the undecided rows, if the other solver's
+    errors leave room in the ``left`` sizes.  Otherwise both solvers have twice the size.
     """
     choices, finer = finding.choices, finding.choices.finer()
     found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
@@ -236,7 +234,7 @@ def _whose(early: Iterable[tuple[str, Answer]]) -> frozenset[str]:
 
 
 def _beside(scene: Scene, coarser: _Finding, finding: _Finding) -> _Finding:
-    """The finding of a size with what it says of half of it: wrong where a value is too far from its refinement."""
+    """The finding of a size, or a wrong value of the coarser size: too far from the refined value."""
     worst, said = 1.0, ""
     if finding.runs is None or coarser.runs is None:
         return finding
@@ -261,7 +259,7 @@ def _depends_on_the_mesh(row: Row) -> bool:
 
 
 def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
-    """By solver the distance of a row's value from the finest of the finer runs, and what it may be."""
+    """Solver, distance of a row's value from the finest value, and allowed distance."""
     if row.bounds is None:
         return
     for solver, mine, answer, own in (
@@ -278,7 +276,7 @@ def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]
 
 
 def _outcome(scene: Scene, finding: _Finding) -> Outcome:
-    """The outcome that a finding is, without what the whole effort took."""
+    """The outcome of a finding, without seconds and iterations."""
     rows = [(row, row.bounds) for row in finding.rows if row.bounds is not None]
     links, elements = finding.choices.links, finding.choices.elements
     assert isinstance(links, int)
@@ -298,7 +296,7 @@ def _outcome(scene: Scene, finding: _Finding) -> Outcome:
 
 
 def _pressure(row: Row, bounds: Bounds) -> float:
-    """A row's difference over what is stated of it."""
+    """A row's difference over the stated error."""
     if bounds.total > 0.0:
         return row.difference / bounds.total
     return float("inf") if row.difference else 0.0
