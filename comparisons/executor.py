@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -232,6 +233,11 @@ class Crew:
     """Processes for the solves of one case after the other; without a pool all solves run in this process."""
 
     pool: Executor | None = None
+
+    def begin(self, call: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> Callable[[], T]:
+        """A function for the value of a call, which begins at once in the pool; without a pool, with the function."""
+        now = partial(call, *arguments, **named)
+        return now if self.pool is None else self.pool.submit(call_limited, None, now).result
 
     def answers(self, jobs: list[Job], decided: Decided = lambda *first: False) -> list[Answer]:
         """The answers to jobs, in the order of the jobs.

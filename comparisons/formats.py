@@ -98,8 +98,7 @@ def display_units(scene: Scene, sizes: Iterable[tuple[str, float]]) -> Mapping[s
         scene: the question.
         sizes: SI unit and magnitude of every value.
     """
-    largest = dict(sorted(sizes))  # the last of a unit stays
-    return {unit: display_unit(scene, unit, size) for unit, size in largest.items()}
+    return {unit: display_unit(scene, unit, largest) for unit, largest in dict(sorted(sizes)).items()}
 
 
 def file_unit(scene: Scene, unit: str) -> tuple[float, str]:

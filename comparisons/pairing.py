@@ -271,12 +271,12 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE,
     choices = choices.within(theory)
     even = replace(choices, formulation="auto")
     jobs = _planned(scene, choices, solvers, bare=bare)
+    theories = [] if bare else [crew.begin(in_other_theory, scene, even, solvers)]
+    paper = [] if bare or "cprbm auto" in jobs else [crew.begin(in_paper, scene, choices, solvers)]
     answers = crew.answers(list(jobs.values()), partial(_nothing_in_common, scene))
     found: dict[str, Answer | str] = dict(zip(jobs, answers, strict=False))  # of decided runs the first two alone
-    if not bare:
-        has_paper = len(found) == len(jobs) and "cprbm auto" not in jobs
-        found |= in_other_theory(scene, even, solvers)
-        found |= in_paper(scene, choices, solvers) if has_paper else {}
+    for results in theories + (paper if len(found) == len(jobs) else []):
+        found |= results()
     beside = {f"{name} beside": 1.0 / ratio for name, ratio in zip(SOLVERS, even.ratios_beside(), strict=True)}
     return runs_of(scene, theory, found, {**beside, **TWICE})
 

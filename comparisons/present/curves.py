@@ -48,8 +48,11 @@ def _ordinates(scene: Scene, stages: Sequence[Stage]) -> Iterator[tuple[str, str
     if isinstance(stepped, Force):
         moved, way = Probe(of=stepped.point, quantity="displacement").name, unit(stepped.direction)
         if moved in names:
-            title = f"displacement of {stepped.point} along the force"
-            yield title, "m", {"": lambda at: np.atleast_1d(at.values[moved] @ way)}
+            yield (
+                f"displacement of {stepped.point} along the force",
+                "m",
+                {"": lambda at: np.atleast_1d(at.values[moved] @ way)},
+            )
     elif isinstance(stepped, DisplacementDrive | RotationDrive) and reaction_probe(stepped).name in names:
         quantity = reaction_probe(stepped).quantity
         title = {"reaction": "reaction force"}.get(quantity, "reaction moment")

@@ -208,10 +208,13 @@ def paper_table(compared: Comparison) -> Table:
         Column(f"at {at_station(scene, *last)}" if found else "", at_last.get, text),
     ]
     paper = runs.answers.get(runs.formulations[0])
-    note = "Distances of the CPRBM's values at the same N; they take no part in the verdict. Fractions above tenfold "
-    note += "stand as distances." + ("" if paper is None else _paper_note(scene, paper))
-    names = dict.fromkeys(row.probe.name for row, _ in found)
-    return table_of("The formulation paper beside auto", columns, names, note)
+    note = (
+        "Distances of the CPRBM's values at the same N; they take no part in the verdict. Fractions above tenfold "
+        f"stand as distances.{'' if paper is None else _paper_note(scene, paper)}"
+    )
+    return table_of(
+        "The formulation paper beside auto", columns, dict.fromkeys(row.probe.name for row, _ in found), note
+    )
 
 
 def _paper_note(scene: Scene, paper: Answer) -> str:
