@@ -130,19 +130,20 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
     change[system.rows.first :] = 0.0
     change *= KICK / np.abs(change[system.angles]).max()
     kicked = [replace(start, z=start.z + sense * change) for sense in (1.0, -1.0)]
-    strength, energy = 2.0 * soft, potential(system, start)
+    energy = potential(system, start)
     # a drive ahead of the critical point turns links, however stiff the springs
-    driven = _step(system, start, RIGID * strength, acting, iterations)
+    driven = _step(system, start, RIGID * soft, acting, iterations)
     longest = KICK + (_moved(system, start, driven.state) if driven is not None else 0.0)
-    for _ in range(TRIES):
+    for number in range(2 * TRIES):
+        strength = soft * STIFFER ** (0.5 + number % TRIES)
         steps = [(each, _step(system, each, strength, acting, iterations)) for each in kicked]
         ways = [(each, step.state) for each, step in steps if step is not None]
-        if ways and max(_moved(system, *way) for way in ways) <= longest:
+        # soft springs hold no state on the way down; the springs stiffen until both senses have states, if they ever do
+        if len(ways) > 1 - number // TRIES and max(_moved(system, *way) for way in ways) <= longest:
             states = [state for _, state in ways]
             energies = [potential(system, state) for state in states]
             equal = SAME * abs(energy - min(energies)) + ROUND_OFF * abs(energy)
             return states[int(energies[0] - min(energies) > equal)], strength
-        strength *= STIFFER
     raise NotConvergedError("the descent does not begin")
 
 
