@@ -42,7 +42,7 @@ class Settings(BaseModel):
     degree: Annotated[int, Field(ge=1, le=8)] = 4
     tolerance: Annotated[float, Field(gt=0.0, le=1e-4)] = 1e-11
     iterations: Annotated[int, Field(ge=1)] = 50
-    iteration_limit: Annotated[int, Field(ge=1)] = 1000
+    iteration_limit: Annotated[int, Field(ge=1)] = 3000
     largest_turn: Annotated[float, Field(gt=0.0)] = 1.6
     smallest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 1e-5
 
@@ -52,8 +52,7 @@ class Settings(BaseModel):
 
     def finer(self) -> Settings:
         """The same with twice the elements."""
-        links = self.links
-        twice = 2 * links if isinstance(links, int) else _frozen({beam: 2 * number for beam, number in links.items()})
+        twice = 2 * self.links if isinstance(self.links, int) else _frozen({k: 2 * n for k, n in self.links.items()})
         return self.model_copy(update={"links": twice})
 
     def plain(self) -> dict[str, object]:

@@ -152,9 +152,11 @@ def passed_through(geometry: Geometry, before: Array, old: Places, after: State)
     if not unsigned.any():
         return False
     new = with_fixed_places(geometry, z, contacts).places
-    first, second, number = separations(before, arrays, old), separations(z, arrays, new), matched(arrays, old, new)
-    seen = np.flatnonzero(unsigned & (number >= 0) & (np.hypot(*first.T) < REACH))
-    return bool(np.any(np.einsum("ij,ij->i", first[seen], second[number[seen]]) < 0.0))
+    first, second, number = separations(before, arrays, old), separations(z, arrays, old), matched(arrays, old, new)
+    near = np.flatnonzero((number >= 0) & (np.hypot(*first.T) < REACH))
+    # near the beam a place slides away from the old foot, far from the beam the foot leaps to another part
+    second[near] = separations(z, arrays, new)[number[near]]
+    return bool(np.any(np.einsum("ij,ij->i", first, second)[unsigned] < 0.0))
 
 
 def solve_set(
