@@ -67,7 +67,7 @@ CAREFUL_TURN = 0.2
 BESIDE = 0.3
 """Largest turn, rad, to a state beside a critical point that no stage asks for."""
 
-AHEAD = (0.01, 0.03, 0.1)
+AHEAD = (0.001, 0.01, 0.03, 0.1)
 """Fractions of the rest of the way at which a minimum beyond a critical point is sought (nearby minima are soft)."""
 
 ENDS = 10
