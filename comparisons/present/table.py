@@ -36,8 +36,8 @@ _LONG = 24
 _SENTENCE = 60
 """Characters of a text longer than all numbers."""
 
-_NUMBER = re.compile(r"([+-]?\d+)((?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
-_NUMERIC = re.compile(r"\(?[+-]?\d")
+_NUMBER = re.compile(r"([+−-]?\d+)((?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
+_NUMERIC = re.compile(r"\(?[+−-]?\d")
 _OTHERS = ("–", "open", "none", "all", "")
 """Further texts in a column of numbers."""
 

@@ -145,18 +145,19 @@ def test_all_numbers_of_a_table_are_on_the_screen(rows, width):
 def test_numbers_on_a_page_align_at_their_points_and_words_stay_whole():
     table = Table(
         "",
-        ("probe", "difference", "value", "says", "N"),
+        ("probe", "difference", "value", "says", "N", "part"),
         (
-            ("a", "0.72 %", "(-1.2, 3)", "met", "-40"),
-            ("b", "0.0017 %", "-4.5", "not met", "7"),
-            ("c", "–", "max 5", "–", "open"),
-            ("d", "7.9e-13 %", "open", "met", "1.25"),
+            ("a", "0.72 %", "(-1.2, 3)", "met", "-40", "−0.5"),
+            ("b", "0.0017 %", "-4.5", "not met", "7", "−1.2e-04"),
+            ("c", "–", "max 5", "–", "open", "−40"),
+            ("d", "7.9e-13 %", "open", "met", "1.25", "–"),
         ),
     )
     rows = html_cells(table)
     assert [row[1][:3] for row in rows] == [("0", ".72 %", 8), ("0", ".0017 %", 8), ("–", "", 0), ("7", ".9e-13 %", 8)]
     assert [row[4][:3] for row in rows] == [("−40", "", 3), ("7", "", 3), ("open", "", 0), ("1", ".25", 3)]
-    assert [cell.words for cell in rows[0]] == [True, False, False, True, False]
+    assert [row[5][:3] for row in rows] == [("−0", ".5", 6), ("−1", ".2e-04", 6), ("−40", "", 6), ("–", "", 0)]
+    assert [cell.words for cell in rows[0]] == [True, False, False, True, False, False]
     assert [row[2].before for row in rows] == ["(−1.2, 3)", "−4.5", "max 5", "open"]
     assert [row[3].text for row in rows] == ["met", "not met", "–", "met"]
     assert all(row[2].room == row[3].room == 0 for row in rows)
