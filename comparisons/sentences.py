@@ -117,8 +117,11 @@ def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
 
 
 def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
-    """The incomplete runs of some ``names``, and their problems; each problem once."""
-    first = {name: _first(problem_sentences(runs.scene, runs.same_theory[name])) for name in names}
+    """The incomplete runs of some ``names``, and their problems; each problem once, and the compared runs first."""
+    first = {
+        name: _first(problem_sentences(runs.scene, runs.same_theory[name]))
+        for name in sorted(names, key=lambda name: name not in SOLVERS)
+    }
     parts = "; ".join(f"{', '.join(mine)}: {problem}" for problem, mine in _names_by_text(first).items())
     return f"Runs without a complete answer: {parts}."
 
