@@ -79,7 +79,7 @@ def brief_lines(table: Table, *, width: int) -> list[str]:
 
 def _fill(grid: Grid, rows: Iterable[Iterable[str]]) -> None:
     for row in rows:
-        grid.add_row(*(Text(cell, style=STYLES.get(cell, "")) for cell in row))
+        grid.add_row(*(Text(cell, style=STYLES.get(cell.partition(" (")[0], "")) for cell in row))
 
 
 def _printed(content: Grid | Text, width: int) -> str:

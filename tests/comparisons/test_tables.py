@@ -99,6 +99,14 @@ def test_a_table_keeps_to_its_width_and_splits_between_columns(width, monkeypatc
         assert {len(row.rstrip()) for row in lines[place + 2 : place + 4]} == {len(lines[place].rstrip())}
 
 
+def test_a_word_with_its_reason_has_the_colour_of_the_word():
+    sheet = Table("", ("probe", "word"), (("tip", "UNDECIDED"), ("pin", "UNDECIDED (THEORY)")))
+    yellow = "\x1b[33m"
+    assert screen_text(sheet, width=60).count(yellow) == 2
+    chapter = page.Chapter("c", "C", "", (Section("S", tables=(sheet,)),))
+    assert page.html(page.report_page([chapter])).count('UNDECIDED">UNDECIDED') == 2
+
+
 def test_titles_notes_and_sentences_stand_left_numbers_right_and_long_texts_fold():
     title, note = "A title that is wider than its table", "COMPLETED: every station was reached and certified"
     lines = lines_of(Table(title, ("stage", "at"), (("press", "1.5 N"),), note), 60)
