@@ -107,6 +107,15 @@ def test_a_word_with_its_reason_has_the_colour_of_the_word():
     assert page.html(page.report_page([chapter])).count('UNDECIDED">UNDECIDED') == 2
 
 
+def test_commands_in_sentences_of_a_page_are_code_and_their_text_is_escaped():
+    sheet = Table("", ("probe", "remedy"), (("tip", "Use `-n 80`."),), note="As `<b>` says.")
+    section = Section("S", ("Use the value in shear: `--theory shear`.",), tables=(sheet,))
+    text = page.html(page.report_page([page.Chapter("c", "C", "", (section,))]))
+    found = re.findall(r"<code>([^<]*)</code>", text)
+    assert {"--theory shear", "-n 80", "&lt;b&gt;"} <= set(found)
+    assert "`--theory" not in text
+
+
 def test_titles_notes_and_sentences_stand_left_numbers_right_and_long_texts_fold():
     title, note = "A title that is wider than its table", "COMPLETED: every station was reached and certified"
     lines = lines_of(Table(title, ("stage", "at"), (("press", "1.5 N"),), note), 60)
