@@ -32,7 +32,7 @@ _REMEDIES: Mapping[Loss | Ending, str] = {
     Loss.FOLD: 'a drive in place of the load, or `beyond = "jump"` in the stage',
     Loss.BIFURCATION: "a small `imperfection` of a beam, which selects a side",
     **dict.fromkeys((Loss.CONTACT, Loss.STOP, Loss.SLIP), '`beyond = "jump"` in the stage'),
-    Ending.STEP_TOO_SMALL: "more links, a smaller last station, or the theory `shear` for taut beams",
+    Ending.STEP_TOO_SMALL: "more links, a smaller last station, or for taut beams in bending the theory `shear`",
     Ending.BEAMS_CROSSED: "a station before the crossing, and a contact for every pair that touches",
     Ending.LEFT_BOUNDARY: "the formulation `auto`",
     Ending.NOT_CERTIFIED: "more links and elements",
@@ -117,8 +117,11 @@ def problem_sentences(scene: Scene, answer: Answer) -> tuple[str, ...]:
 
 
 def ended_sentence(runs: Runs, names: Iterable[str]) -> str:
-    """The incomplete runs of some ``names``, and their problems; each problem once."""
-    first = {name: _first(problem_sentences(runs.scene, runs.same_theory[name])) for name in names}
+    """The incomplete runs of some ``names``, and their problems; each problem once, and the compared runs first."""
+    first = {
+        name: _first(problem_sentences(runs.scene, runs.same_theory[name]))
+        for name in sorted(names, key=lambda name: name not in SOLVERS)
+    }
     parts = "; ".join(f"{', '.join(mine)}: {problem}" for problem, mine in _names_by_text(first).items())
     return f"Runs without a complete answer: {parts}."
 

@@ -146,6 +146,11 @@ _ALLOWED = {
     "string_type": "a text in quotes",
     "bool_type": "true or false",
     "tuple_type": "a list",
+    "str for the list points": ", or the name of a table of points in a scene file",
+    **{
+        f"dict for the list {key}": f" of tables, each below [[{key}]]"
+        for key in ("stages", "probes", "claims", "limits")
+    },
     "dict_type": "a table",
     "mapping_type": "a table",
     "model_type": "a table",
@@ -161,7 +166,7 @@ _ALLOWED = {
     "string_too_long": "at most {max_length} characters",
     "literal_error": "one of {expected}",
 }
-"""Allowed values by the type of an error, with the fields of the error's context."""
+"""Allowed values by the type of an error, with the fields of the error's context; the ends of texts on lists."""
 
 
 def in_words(error: ValidationError, data: object, fields: Mapping[str, FieldInfo]) -> Iterator[Mistake]:
@@ -184,8 +189,8 @@ def _mistake(details: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Mistake:
     kind, loc, given, context = details["type"], details["loc"], details.get("input"), details.get("ctx", {})
     key, known, allowed = "", list[str](), _ALLOWED.get(kind, "{message}").format(message=details["msg"], **context)
     match kind:
-        case "tuple_type" if loc[-1] == "points" and isinstance(given, str):
-            allowed += ", or the name of a table of points in a scene file"
+        case "tuple_type":
+            allowed += _ALLOWED.get(f"{type(given).__name__} for the list {loc[-1]}", "")
         case "extra_forbidden":
             return unknown_name("", str(loc[-1]), "key here", (name for name in fields if name != "file"))
         case "string_pattern_mismatch" if "x00" in context["pattern"]:

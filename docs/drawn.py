@@ -77,7 +77,7 @@ def solved(scene: Scene) -> tuple[Answer, Answer]:
     """Answers of both solvers at ``LINKS`` and ``ELEMENTS``."""
     return (
         cprbm.answer(scene, cprbm.Settings(links=LINKS)),
-        fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS)),
+        fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS, kinematics=scene.theory)),
     )
 
 
@@ -120,9 +120,10 @@ def numbers(scene: Scene) -> str:
     answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
         f"The recorded numbers at {last.steps} = {_short(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
-        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new numbers with the record):",
+        f"elements per beam). The columns have different beam theories; `cprbm compare {scene.name}` answers in one "
+        "theory. `python -m tests.baseline` compares new numbers with the record.",
         "",
-        "| probe | unit | CPRBM | FEA |",
+        f"| probe | unit | CPRBM in {scene.theory} | FEA in shear |",
         "|---|---|---:|---:|",
     ]
     for probe in scene.probes:

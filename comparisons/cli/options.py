@@ -170,7 +170,7 @@ EXACT = click.Option(
 QUIET = flag(["-q", "--quiet"], help="Print neither tables nor progress.")
 BRIEF = flag(["-q", "--quiet"], help="Print nothing about the written file.")
 VERBOSE = flag(["-v", "--verbose"], expose_value=False, callback=listen,
-               help="Print runs, stations and iterations on standard error.")  # fmt: skip
+               help="Print runs, stations and iterations on standard error, and all tables of 'compare'.")  # fmt: skip
 OUTPUT = (
     click.Option(["--json", "json_file"], type=FILE, metavar="FILE",
                  help="Write the numbers as JSON in SI; '-' is standard output without further text."),

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from comparisons.case import Comparison, Verdict
 from comparisons.formats import at_station, component_names, components, number, percent
+from comparisons.opinions import solid_sentence
 from comparisons.present import offset
 from comparisons.present.columns import NOTHING, Column, Table, follow, table_of
 from comparisons.present.offset import Compared, OffsetComparison
@@ -50,6 +51,7 @@ def brief(compared: Compared, argument: str, page: Path | None = None, width: in
     rest = [
         unreached_sentence(compared.runs),
         theory_sentence(compared.runs, compared.rows),
+        solid_sentence(compared),
         *dict.fromkeys(map(remedy_sentence, compared.runs.pair)),
     ]
     rest = [*_found_sizes(compared), *(rest if compared.rows else ())]

@@ -97,12 +97,16 @@ def _stage_table(scene: Scene, answer: Answer, stage: Stage) -> Table:
             f"{f'{probe.name} {name}'.rstrip()}, {unit}": tuple(each.get(name, "open") for each in texts)
             for name in component_names(probe.quantity)
         }
-    ended = f"{answer.ending.name}: {answer.sentence or answer.ending.value}"
+    ended = (
+        f"{answer.ending.name}: {answer.sentence or answer.ending.value}",
+        # the table of events states the loads at which contacts close
+        *(f"Note: {note}." for note in answer.notes if ": closed at " not in note),
+    )
     return Table(
         title=f"{scene.title or scene.name}: {stage.name}, {answer.solver}",
         headers=tuple(columns),
         rows=tuple(zip(*columns.values(), strict=True)),
-        note=ended if stations and stations[-1] is answer.stations[-1] else "",
+        note="\n".join(ended) if stations and stations[-1] is answer.stations[-1] else "",
     )
 
 

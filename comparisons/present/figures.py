@@ -46,7 +46,7 @@ _SHAPES, _STRESS = 4.6, 7.4  # inches: the longer side of the window in a figure
 _SHORTEST = (3.6, 1.6)  # inches: least width and height
 _DESIGNS = (RED, BLUE, "#3a8a3a", "#8a4fb0", "#b07a1a")
 _SMALL = 2.0  # a window this many times the loaded mechanism shows the loaded mechanism alone
-_FEW = 8  # places of contact with large marks
+_FEW, _ROOM = 8, 0.06  # places of contact with large marks, and the margin of a window over its longer side
 
 
 def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:
@@ -165,8 +165,8 @@ def _sides(low: Array, high: Array, longest_side: float, room: tuple[float, floa
 
 
 def _set_window(axes: Axes, scene: Scene, low: Array, high: Array, title: str = "") -> None:
-    """Title, equal scales, margins of six hundredths of the longer side, and displayed units."""
-    margin = 0.06 * float(np.max(high - low))
+    """Title, equal scales, margins, and displayed units."""
+    margin = _ROOM * float(np.max(high - low))
     (left, below), (right, above) = low - margin, high + margin
     axes.set(title=title, xlim=(left, right), ylim=(below, above), aspect="equal")
     show_lengths(scene, axes.xaxis, "x")
@@ -175,7 +175,10 @@ def _set_window(axes: Axes, scene: Scene, low: Array, high: Array, title: str = 
 
 def stress_picture(scene: Scene, view: View, bounds: Bounds, quantity: Coloured, kind: str, dots: float) -> bytes:
     """A view as ``png`` or ``svg``: beams at true thickness with colours of a quantity, over the beams at rest."""
-    with canvas(*_sides(bounds.low, bounds.high, _STRESS, (1.6, 1.0))) as (drawing, (axes,)):
+    with canvas(*_sides(bounds.low - _ROOM * bounds.size, bounds.high + _ROOM * bounds.size, _STRESS, (1.7, 0.8))) as (
+        drawing,
+        (axes,),
+    ):
         draw_parts(axes, view.of("edge", "rest"))
         _draw_colours(drawing, axes, scene, view, bounds, quantity)
         draw_parts(axes, view.of("body", "weld", "pin", "pivot", "stop"))

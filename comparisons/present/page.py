@@ -204,6 +204,8 @@ def renderer(template: str) -> Callable[..., str]:
         "stations_json": stations_json,
         # a name may break behind points and underscores; the type of an escaped text marks the escape
         "breaking": lambda name: type(name)(re.sub(r"(?<=\w[._])(?=[^\W\d])", "<wbr>", name)),
+        # commands of an escaped text
+        "coded": lambda text: type(text)(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(text))),
         "joined": lambda sentence: sentence.replace(" %", "\u00a0%"),  # on the line of the number
     }
     return environment.get_template(template).render

@@ -36,8 +36,8 @@ _LONG = 24
 _SENTENCE = 60
 """Characters of a text longer than all numbers."""
 
-_NUMBER = re.compile(r"([+-]?\d+)((?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
-_NUMERIC = re.compile(r"\(?[+-]?\d")
+_NUMBER = re.compile(r"([+−-]?\d+)((?:\.\d+)?(?:e[+-]?\d+)?(?: %|°)?)")
+_NUMERIC = re.compile(r"\(?[+−-]?\d")
 _OTHERS = ("–", "open", "none", "all", "")
 """Further texts in a column of numbers."""
 
@@ -79,7 +79,7 @@ def brief_lines(table: Table, *, width: int) -> list[str]:
 
 def _fill(grid: Grid, rows: Iterable[Iterable[str]]) -> None:
     for row in rows:
-        grid.add_row(*(Text(cell, style=STYLES.get(cell, "")) for cell in row))
+        grid.add_row(*(Text(cell, style=STYLES.get(cell.partition(" (")[0], "")) for cell in row))
 
 
 def _printed(content: Grid | Text, width: int) -> str:

@@ -254,7 +254,7 @@ def scatter_section(scatter: Scatter) -> Section:
     return Section(
         f"Tolerances of {scatter.sweep.scene.name}",
         tuple(sentences),
-        tuple(_histograms(scatter, scattering[:_PANELS])),
+        tuple(_histograms(scatter, scattering[:_PANELS]) if scattering else ()),
         tuple(table for table in tables if table.rows),
         "tolerance",
         _data(scatter, scattering, found),
@@ -287,11 +287,19 @@ def _sentences(scatter: Scatter) -> Iterator[str]:
     yield f"Share of points: {shares}. Intervals of 95 % confidence."
 
 
+def _displayed_unit(scatter: Scatter, measure: Measure) -> tuple[float, str]:
+    """Size in the file's unit and name of the displayed unit: the stated unit, or SI with a prefix."""
+    return (
+        (1.0, measure.unit)
+        if measure.size != 1.0
+        else scaled_unit(measure.unit, abs(measure.values(scatter.nominal)[0]))
+    )
+
+
 def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
     rows = []
     for measure in scattering:
-        nominal = measure.values(scatter.nominal)[0]
-        size, unit = (1.0, measure.unit) if measure.size != 1.0 else scaled_unit(measure.unit, abs(nominal))
+        nominal, (size, unit) = measure.values(scatter.nominal)[0], _displayed_unit(scatter, measure)
         values = values_of(measure, scatter.standing) / size
         rows.append(
             (
@@ -311,8 +319,13 @@ def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
 
 
 def _limit_table(scatter: Scatter) -> Table:
-    met = ((bound, sum(meets(each, (bound,)) for each in scatter.sample)) for bound in scatter.bounds)
-    rows = ((str(bound), _cell(share(count, len(scatter.sample)), whole=100.0)) for bound, count in met)
+    rows = (
+        (
+            str(bound),
+            _cell(share(sum(meets(each, (bound,)) for each in scatter.sample), len(scatter.sample)), whole=100.0),
+        )
+        for bound in scatter.bounds
+    )
     return Table("Limits", ("limit", "met, %"), tuple(rows))
 
 
@@ -338,13 +351,12 @@ def _cell(each: Interval, whole: float = 1.0) -> str:
 
 
 def _histograms(scatter: Scatter, chosen: Sequence[Measure]) -> Iterator[Figure]:
-    if not chosen:
-        return
     with canvas(*panels(len(chosen), 2.6)) as (figure, plots):
         for axes, measure in zip(plots, chosen, strict=True):
-            axes.hist(values_of(measure, scatter.standing), bins="auto", color=BLUE)
-            axes.axvline(measure.values(scatter.nominal)[0], color=RED, linewidth=1.0)
-            axes.set(xlabel=f"{measure}, {with_symbols(measure.unit)}".rstrip(", "), ylabel="points")
+            size, unit = _displayed_unit(scatter, measure)
+            axes.hist(values_of(measure, scatter.standing) / size, bins="auto", color=BLUE)
+            axes.axvline(measure.values(scatter.nominal)[0] / size, color=RED, linewidth=1.0)
+            axes.set(xlabel=f"{measure}, {with_symbols(unit)}".rstrip(", "), ylabel="points")
         yield finished(figure, "scatter", "Numbers of points by value at the last stations. Line: nominal value.")
 
 

@@ -130,6 +130,13 @@ def test_compare_all_writes_the_report_where_it_stands_and_an_interruption_leave
     assert len(json.loads((tmp_path / "all.json").read_text("utf-8"))["cases"]) == 1
 
 
+def test_solve_prints_the_notes_of_an_answer(tmp_path, capsys):
+    text = (ROOT / "docs" / "gallery" / "latch.toml").read_text("utf-8")
+    (tmp_path / "latch.toml").write_text(re.sub("stations = .*", "stations = [3.0]", text), "utf-8")
+    assert run(["solve", str(tmp_path / "latch.toml"), "-n", "8"]) == 0
+    assert "Note: contact 'pin' never closed at a station." in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("options", "theory"),
     [

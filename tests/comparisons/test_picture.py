@@ -9,6 +9,7 @@ import os
 import re
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -373,6 +374,17 @@ def test_a_process_that_ends_as_it_draws_is_named_with_the_command_that_helps(tm
     assert said.count("\n") == 1
     assert "apt-get install --yes --no-install-recommends libegl1 libgl1-mesa-dri" in said
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("mechanism", ["docs/gallery/latch.toml", "docs/tutorials/finger.toml"], ids=["wide", "tall"])
+def test_a_picture_cuts_no_label_and_has_narrow_margins(mechanism, tmp_path, monkeypatch):
+    monkeypatch.chdir(Path(__file__).parents[2])
+    assert run(["view", mechanism, "-n", "10", "--out", str(tmp_path / "p.png")]) == 0
+    dark = np.asarray(Image.open(tmp_path / "p.png").convert("L")) < 128
+    for inked in (dark.any(axis=0), dark.any(axis=1)):
+        first, last = np.flatnonzero(inked)[[0, -1]]
+        assert 5 < first < 100, "170 dots to the inch"
+        assert 5 < len(inked) - last < 100
 
 
 def test_the_command_shows_the_station_that_is_asked(tmp_path, capsys):

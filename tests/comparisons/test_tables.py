@@ -99,6 +99,23 @@ def test_a_table_keeps_to_its_width_and_splits_between_columns(width, monkeypatc
         assert {len(row.rstrip()) for row in lines[place + 2 : place + 4]} == {len(lines[place].rstrip())}
 
 
+def test_a_word_with_its_reason_has_the_colour_of_the_word():
+    sheet = Table("", ("probe", "word"), (("tip", "UNDECIDED"), ("pin", "UNDECIDED (THEORY)")))
+    yellow = "\x1b[33m"
+    assert screen_text(sheet, width=60).count(yellow) == 2
+    chapter = page.Chapter("c", "C", "", (Section("S", tables=(sheet,)),))
+    assert page.html(page.report_page([chapter])).count('UNDECIDED">UNDECIDED') == 2
+
+
+def test_commands_in_sentences_of_a_page_are_code_and_their_text_is_escaped():
+    sheet = Table("", ("probe", "remedy"), (("tip", "Use `-n 80`."),), note="As `<b>` says.")
+    section = Section("S", ("Use the value in shear: `--theory shear`.",), tables=(sheet,))
+    text = page.html(page.report_page([page.Chapter("c", "C", "", (section,))]))
+    found = re.findall(r"<code>([^<]*)</code>", text)
+    assert {"--theory shear", "-n 80", "&lt;b&gt;"} <= set(found)
+    assert "`--theory" not in text
+
+
 def test_titles_notes_and_sentences_stand_left_numbers_right_and_long_texts_fold():
     title, note = "A title that is wider than its table", "COMPLETED: every station was reached and certified"
     lines = lines_of(Table(title, ("stage", "at"), (("press", "1.5 N"),), note), 60)
@@ -145,18 +162,19 @@ def test_all_numbers_of_a_table_are_on_the_screen(rows, width):
 def test_numbers_on_a_page_align_at_their_points_and_words_stay_whole():
     table = Table(
         "",
-        ("probe", "difference", "value", "says", "N"),
+        ("probe", "difference", "value", "says", "N", "part"),
         (
-            ("a", "0.72 %", "(-1.2, 3)", "met", "-40"),
-            ("b", "0.0017 %", "-4.5", "not met", "7"),
-            ("c", "–", "max 5", "–", "open"),
-            ("d", "7.9e-13 %", "open", "met", "1.25"),
+            ("a", "0.72 %", "(-1.2, 3)", "met", "-40", "−0.5"),
+            ("b", "0.0017 %", "-4.5", "not met", "7", "−1.2e-04"),
+            ("c", "–", "max 5", "–", "open", "−40"),
+            ("d", "7.9e-13 %", "open", "met", "1.25", "–"),
         ),
     )
     rows = html_cells(table)
     assert [row[1][:3] for row in rows] == [("0", ".72 %", 8), ("0", ".0017 %", 8), ("–", "", 0), ("7", ".9e-13 %", 8)]
     assert [row[4][:3] for row in rows] == [("−40", "", 3), ("7", "", 3), ("open", "", 0), ("1", ".25", 3)]
-    assert [cell.words for cell in rows[0]] == [True, False, False, True, False]
+    assert [row[5][:3] for row in rows] == [("−0", ".5", 6), ("−1", ".2e-04", 6), ("−40", "", 6), ("–", "", 0)]
+    assert [cell.words for cell in rows[0]] == [True, False, False, True, False, False]
     assert [row[2].before for row in rows] == ["(−1.2, 3)", "−4.5", "max 5", "open"]
     assert [row[3].text for row in rows] == ["met", "not met", "–", "met"]
     assert all(row[2].room == row[3].room == 0 for row in rows)

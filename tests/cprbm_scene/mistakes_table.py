@@ -72,6 +72,7 @@ SECTIONS = {
             ("contacts/contact/paper/axes", "y", "is 'axis' meant"),
             ("contacts/contact/paper/related/beam1/z", [0, 1], "'x', 'y'"),
             ("stages", [3], "stages[0]", "a table"),
+            ("stages", {"name": "load"}, "a list of tables, each below [[stages]]"),
             ("theory", "plastic", "'bending', 'stretch' or 'shear'"),
             ("file", "x.toml", "no key here"),
             ("title", "a\x07b", "control characters"),

@@ -5,6 +5,7 @@ In the linear range the tip force P deflects a cantilever by 4 P L³ / (E b t³)
 """
 
 import json
+import re
 from dataclasses import replace
 from math import sqrt
 
@@ -182,6 +183,14 @@ def test_quantiles_shares_and_yield(scene, written, tmp_path, capsys):
     assert low < met / 64 < high
     assert "Quantiles" in (out / "index.html").read_text("utf-8")
     assert "yield" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("printed")
+def test_histograms_have_the_units_of_the_table(written, tmp_path, capsys):
+    scene = written("si.toml", SCATTERING.replace('units = { length = "mm", stress = "MPa" }', ""))
+    assert run(["tolerance", str(scene), "-n", "6", "--samples", "16", "--out", str(tmp_path)]) == 0
+    assert re.search(r"B\.displacement\.y +mm +23\.", capsys.readouterr().out)
+    assert "<!-- load B.displacement.y, mm -->" in (tmp_path / "scatter.svg").read_text("utf-8")
 
 
 def test_failing_points_are_counted(scene):

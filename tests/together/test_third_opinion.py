@@ -7,6 +7,7 @@ from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.opinions import solid_sentence, thirds_of
 from comparisons.pairing import Solvers, paired, with_solid
+from comparisons.present.brief import brief
 from comparisons.present.json_document import comparison
 from comparisons.present.row_tables import solid_table
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
@@ -45,6 +46,7 @@ def test_three_columns_are_told(thick):
     assert len(sheet.rows) == 2
     assert "in bending (finite elements)" in solid_sentence(thick)
     assert "in shear (CPRBM)" in solid_sentence(thick)
+    assert solid_sentence(thick) in " ".join(brief(thick, "thick.toml").split())
     document = comparison(thick)
     assert document["solvers"]["solid"]["ending"] == "COMPLETED"
     assert {row["probe"] for row in document["solid"]} == {"tip.displacement", "beam.bending_stress"}
