@@ -146,8 +146,7 @@ def solid_limit(
     counts = np.ones(row.fea.shape, dtype=bool)
     if row.probe.quantity in STRESSES and row.arc_length is not None:
         counts = away_from_point_forces(scene, row.probe.of, row.arc_length, (*stations[-2:], *beside))
-    sizes = [2.0**place for place in range(len(values))]
-    return limit(sizes[first:], values[first:]), counts
+    return limit([2.0**place for place in range(first, len(values))], values[first:]), counts
 
 
 def contact_model(runs: Runs, row: Row) -> float | None:

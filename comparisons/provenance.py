@@ -58,5 +58,6 @@ def _processor() -> str:
     """Name of the processor as the system states the name."""
     text = _PROCESSORS.read_text(encoding="utf-8", errors="replace") if _PROCESSORS.is_file() else ""
     pairs = (line.partition(":") for line in text.splitlines())
-    names = (value.strip() for key, _, value in pairs if key.strip() == "model name")
-    return next(names, platform.processor() or "unknown")
+    return next(
+        (value.strip() for key, _, value in pairs if key.strip() == "model name"), platform.processor() or "unknown"
+    )

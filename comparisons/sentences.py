@@ -167,6 +167,7 @@ def critical_sentence(runs: Runs, row: CriticalRow) -> str:
         f"; the theories are {theories} apart": known and math.isfinite(row.theory),
         "; the CPRBM has no such point in the other theory": known and row.theory == math.inf > row.largest,
         "; the loads agree, the mechanisms do not": row.kind_open,
+        ", a fold that releases less than 0.1 % of the energy": row.is_faint,
         ", and the run without it ended before that load": not known and row.ended_before,
         f", and runs of one solver disagree ({listed}); refine both: `-n` and `--elements` twice as large":
             disagree and (known or not row.ended_before),

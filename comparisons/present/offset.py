@@ -128,8 +128,9 @@ def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cp
 
 def claim_of_offset(question: OffsetQuestion, n: int) -> OffsetClaim | None:
     """The strictest claim about a chain of ``n`` springs."""
-    claims = [claim for claim in question.claims if n >= claim.numbers_from]
-    return min(claims, key=lambda claim: claim.bound, default=None)
+    return min(
+        (claim for claim in question.claims if n >= claim.numbers_from), key=lambda claim: claim.bound, default=None
+    )
 
 
 def _rows(question: OffsetQuestion, name: str, found: Offsets, exact: Array) -> Iterator[OffsetRow]:

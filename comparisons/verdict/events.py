@@ -16,7 +16,8 @@ runs of one solver disagree, or U > T, or, in ``bending``, θ > max(T, W).  It a
 
 A fold of one solver and a bifurcation of the other at |λ_c − λ_f| ≤ U are undecided: the loads agree, and the kind of
 the critical point is open.  An answer states no mode that could tell whether both are one point.  So are two contacts
-that let go at one load, as on both sides of a symmetric mechanism.
+that let go at one load, as on both sides of a symmetric mechanism.  So is a fold of one solver alone that releases less
+than 0.1 % of the energy: a step of the other solver may pass such a fold.
 
 The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
 stage without ``beyond`` a run may pass a critical point and go on along another branch.  A passed critical point stands
@@ -109,7 +110,7 @@ class CriticalRow:
         rules: tuple[tuple[bool, tuple[Word, Reason | None]], ...] = (
             (disagree_within_a_solver(self.mechanisms), (Word.UNDECIDED, Reason.BRANCH)),
             (self.ended_before, (Word.UNDECIDED, Reason.RUN_ENDED)),
-            (self.kind_open, (Word.UNDECIDED, Reason.BRANCH)),
+            (self.kind_open or self.is_faint, (Word.UNDECIDED, Reason.BRANCH)),
             (None in pair or pair[0] != pair[1], (Word.DIFFER, Reason.EVENTS)),
             (self.bounds is None, (Word.UNDECIDED, Reason.RUN_ENDED)),
             (self.difference > max(self.allowed, total), (Word.DIFFER, Reason.EVENTS)),
@@ -129,6 +130,12 @@ class CriticalRow:
             and self.bounds is not None
             and self.difference <= self.bounds.total
         )
+
+    @property
+    def is_faint(self) -> bool:
+        """Whether one solver alone has the point, a fold that releases no energy: a step of the other may pass it."""
+        alone = [one for one in (self.cprbm, self.fea) if one is not None]
+        return [one.loss for one in alone] == [Loss.FOLD] and alone[0].after is not None and released(alone[0]) is None
 
     @property
     def word(self) -> Word:

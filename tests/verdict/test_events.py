@@ -163,6 +163,19 @@ def test_the_span_of_a_load_and_its_hundredth_that_two_critical_loads_may_differ
 
 
 @pytest.mark.parametrize(
+    ("after", "word"), [(0.9995, "UNDECIDED BRANCH"), (0.9985, "DIFFER EVENTS"), (None, "DIFFER EVENTS")]
+)
+@pytest.mark.parametrize("solver", ["cprbm", "fea"])
+def test_a_fold_of_one_solver_that_releases_no_energy_is_undecided(hinge, solver, after, word):
+    """The energy before is 1 J, and 0.001 J are allowed; a solver that stops at the fold states no energy after."""
+    runs = {name: loads(name) for name in ("cprbm", "fea")}
+    fold = Critical("load", 0.3, 0.0, Loss.FOLD, "", 0.0, 0.0, 1.0, after)
+    runs[solver] = replace(runs[solver], critical=(fold,))
+    (row,) = critical_rows(Runs(hinge, "bending", runs | {f"{name} finer": run for name, run in runs.items()}))
+    assert words(row.judged) == word
+
+
+@pytest.mark.parametrize(
     ("change", "problem"),
     [
         (lambda one, two: (), "critical values say otherwise"),
