@@ -104,7 +104,7 @@ def _curve(
     marks = [(each.value / step, {"FEA": RED, "CPRBM": BLUE}[name]) for name, mine in ends.items() for each in mine]
     above = [
         (f"{number(each.value / step, 4)} {step_unit}, {each.loss.value}".replace(" °", "°"), (each.value / step, 1.0),
-         {"xycoords": ("data", "axes fraction"), "ha": "center", "xytext": (0, 3 + 12 * (place % 2))})
+         {"xycoords": ("data", "axes fraction"), "ha": "center", "xytext": (0, 3 + 12 * place)})
         for place, each in enumerate(ends["CPRBM"])
     ]  # fmt: skip
     titles = ", ".join(title for title, *_ in ordinates)
