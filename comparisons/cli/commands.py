@@ -35,8 +35,9 @@ class SolvingCommand(click.Command):
 
         for name, option in SEARCHED.items() if ctx.params.get("tol") else ():
             if ctx.get_parameter_source(name) is not ParameterSource.DEFAULT:
-                text = f"found --tol and {option}; allowed: only one of the two, since --tol searches N."
-                raise click.UsageError(text, ctx)
+                raise click.UsageError(
+                    f"found --tol and {option}; allowed: only one of the two, since --tol searches N.", ctx
+                )
         chosen, shared = (
             {each.name: ctx.params.pop(each.name) for each in fields(record) if each.name in ctx.params}
             for record in (Choices, Request)

@@ -128,8 +128,10 @@ def _end(error: Exception) -> End | None:
             lines = [_with_next_step(mistake) for mistake in error.mistakes]
             return ("\n  " if len(lines) > 1 else " ").join(("The question is wrong.", *lines)), WRONG_QUESTION
         case WorkerDiedError():
-            killed = "A worker process was killed, perhaps for lack of memory."
-            return f"{killed} {_KEPT}; repeat the command to go on.", INCOMPLETE
+            return (
+                f"A worker process was killed, perhaps for lack of memory. {_KEPT}; repeat the command to go on.",
+                INCOMPLETE,
+            )
         case BrokenExecutor():
             return f"{error} {_KEPT}; repeat the command to go on.", INCOMPLETE
     return None

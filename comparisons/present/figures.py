@@ -46,7 +46,8 @@ _SHAPES, _STRESS = 4.6, 7.4  # inches: the longer side of the window in a figure
 _SHORTEST = (3.6, 1.6)  # inches: least width and height
 _DESIGNS = (RED, BLUE, "#3a8a3a", "#8a4fb0", "#b07a1a")
 _SMALL = 2.0  # a window this many times the loaded mechanism shows the loaded mechanism alone
-_FEW, _ROOM = 8, 0.06  # places of contact with large marks, and the margin of a window over its longer side
+_FEW = 8  # places of contact with large marks
+_ROOM = 0.06  # margin of a window over its longer side
 
 
 def comparison_figures(compared: Comparison) -> tuple[Figure, ...]:

@@ -319,13 +319,8 @@ def _quantile_table(scatter: Scatter, scattering: Sequence[Measure]) -> Table:
 
 
 def _limit_table(scatter: Scatter) -> Table:
-    rows = (
-        (
-            str(bound),
-            _cell(share(sum(meets(each, (bound,)) for each in scatter.sample), len(scatter.sample)), whole=100.0),
-        )
-        for bound in scatter.bounds
-    )
+    met = ((bound, sum(meets(each, (bound,)) for each in scatter.sample)) for bound in scatter.bounds)
+    rows = ((str(bound), _cell(share(count, len(scatter.sample)), whole=100.0)) for bound, count in met)
     return Table("Limits", ("limit", "met, %"), tuple(rows))
 
 

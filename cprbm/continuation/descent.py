@@ -62,7 +62,7 @@ KICKS = 5
 """Saddles that a descent may come to."""
 
 TRIES = 20
-"""Strengths of the springs for the first step."""
+"""Strengths of the springs for the first step, at first with a state in both senses, then in one sense alone."""
 
 SAME = 1e-3
 """Relative difference of two energies' decreases that counts as none: a mirror image differs by the residual."""
@@ -135,7 +135,7 @@ def _kicked(system: System, start: State, curvature: float, acting: Flags, itera
     driven = _step(system, start, RIGID * soft, acting, iterations)
     longest = KICK + (_moved(system, start, driven.state) if driven is not None else 0.0)
     for number in range(2 * TRIES):
-        strength = soft * STIFFER ** (0.5 + number % TRIES)
+        strength = 2.0 * soft * STIFFER ** (number % TRIES)
         steps = [(each, _step(system, each, strength, acting, iterations)) for each in kicked]
         ways = [(each, step.state) for each, step in steps if step is not None]
         # soft springs hold no state on the way down; the springs stiffen until both senses have states, if they ever do

@@ -289,3 +289,33 @@ def double_cosine() -> dict[str, Any]:
         stages=[_stage("push", "v", [0.05 * RISE, 0.5 * RISE], "jump")],
         probes=[{"of": "C", "quantity": "reaction"}],
     )
+
+
+def uneven_halves() -> dict[str, Any]:
+    """A shallow toggle of two unequal strips: behind a bifurcation the branch soon comes to a fold."""
+    left, top, right = [-0.044, 0.0], [0.0, 3.2e-3], [0.043, 0.0]
+    strip = {"width": 6e-3, "material": "nylon"}
+    bow = {"amplitude": -1e-4, "half_waves": 1}
+    return _scene(
+        "uneven-halves",
+        theory="stretch",
+        materials={"nylon": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.33}},
+        bodies={
+            "ground": {"motion": "fixed", "points": {"A": left, "D": right}},
+            "slider": {"motion": "slides", "along": [0.0, 1.0], "points": {"P": top}},
+        },
+        beams={
+            "one": {
+                **strip,
+                "curve": _line(left, top),
+                "thickness": 4e-4,
+                "start": _weld("A"),
+                "end": _weld("P"),
+                "imperfection": bow,
+            },
+            "other": {**strip, "curve": _line(top, right), "thickness": 4.4e-4, "start": _weld("P"), "end": _weld("D")},
+        },
+        loads={"F": {"kind": "force", "point": "P", "direction": [0.0, -1.0]}},
+        stages=[_stage("press", "F", [0.35], "jump")],
+        probes=[{"of": "P", "quantity": "displacement"}],
+    )

@@ -432,34 +432,7 @@ def test_two_halves_that_snap_alone_lean_to_one_side_in_both_solvers(solver, siz
 
 def test_a_fold_close_behind_a_bifurcation_is_named_by_both_solvers():
     # reference: the other solver; the fold is 0.6 % of the way to the station behind the bifurcation
-    left, top, right = [-0.044, 0.0], [0.0, 3.2e-3], [0.043, 0.0]
-    ends = ("A", left, "P", top), ("P", top, "D", right)
-    halves = [
-        {
-            "curve": {"kind": "line", "start": start, "end": end},
-            "thickness": thickness,
-            "width": 6e-3,
-            "material": "nylon",
-            "start": {"joint": "weld", "point": first},
-            "end": {"joint": "weld", "point": last},
-        }
-        for (first, start, last, end), thickness in zip(ends, (4e-4, 4.4e-4), strict=True)
-    ]
-    scene = scene_from(
-        {
-            "name": "uneven halves",
-            "theory": "stretch",
-            "materials": {"nylon": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.33}},
-            "bodies": {
-                "ground": {"motion": "fixed", "points": {"A": left, "D": right}},
-                "slider": {"motion": "slides", "along": [0.0, 1.0], "points": {"P": top}},
-            },
-            "beams": {"one": halves[0] | {"imperfection": {"amplitude": -1e-4, "half_waves": 1}}, "other": halves[1]},
-            "loads": {"F": {"kind": "force", "point": "P", "direction": [0.0, -1.0]}},
-            "stages": [{"name": "press", "steps": "F", "stations": [0.35], "beyond": "jump"}],
-            "probes": [{"of": "P", "quantity": "displacement"}],
-        }
-    )
+    scene = scene_from(branches.uneven_halves())
     answers = (
         cprbm.answer(scene, cprbm.Settings(links=40)),
         fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="stretch")),
